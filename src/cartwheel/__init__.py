@@ -53,6 +53,7 @@ if TYPE_CHECKING:
         World,
         WorldDescription,
         build,
+        launch,
         seconds,
     )
     from cartwheel.arrays import (
@@ -121,6 +122,7 @@ __all__ = [
     "cloud",
     "depth",
     "image",
+    "launch",
     "project",
     "scan",
     "seconds",

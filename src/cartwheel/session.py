@@ -14,12 +14,18 @@ from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.component import Shared, TopicSharing
 from cartwheel.description.files.package_files import SimulationPackages
 from cartwheel.description.files.readings import Readings
+from cartwheel.description.launches import LaunchUse
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
 from cartwheel.dialects.ros_control.files import ControllerFiles
-from cartwheel.dialects.ros_control.selection import selection_near, with_published_control
+from cartwheel.dialects.ros_control.selection import (
+    Selection,
+    selection,
+    selection_near,
+    with_published_control,
+)
 from cartwheel.dialects.ros_control.suggestion import lacks_controllers, no_controllers, suggested
 from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Code, Diagnostic, PluginError
@@ -176,7 +182,7 @@ class Session:
         pose: Pose | None = None,
         namespace: str = "/",
         frame_prefix: str = "",
-        controllers: Sequence[Path] | Literal["auto"] | None = (),
+        controllers: Sequence[Path] | LaunchUse | Literal["auto"] | None = (),
         package_path: Sequence[Path] = (),
     ) -> str:
         """Spawns a model as `Simulation.spawn` does; in strict mode, warnings are errors.
@@ -191,8 +197,9 @@ class Session:
                 leaves the default to each plugin.
             frame_prefix: Prefix of frame names.
             controllers: YAML files whose controllers the model's controller manager starts. "auto"
-                selects those that the launch files of the model's package start. None selects
-                none, with a warning if the controller manager then has none.
+                selects those that the launch files of the model's package start, and a `LaunchUse`
+                those that one launch file starts. None selects none, with a warning if the
+                controller manager then has none.
             package_path: Folders to search for the packages of message types first.
 
         Raises:
@@ -209,38 +216,30 @@ class Session:
             if controllers is None and known(description, "lacking", lacking):
                 found = known(description, "suggested", lambda: suggested(description))
                 self.simulation.engine.report(no_controllers(description, found))
-            names: tuple[str, ...] = ()
             if controllers == "auto":
-                selected = known(
-                    description,
-                    ("selection", *package_path),
-                    lambda: selection_near(description, package_path),
-                )
-                controllers, names = selected.files, selected.names
-                for each in selected.problems:
-                    self.simulation.engine.report(each)
-            files = tuple(Path(file) for file in controllers or ())
+                key = ("selection", *package_path)
+                nearby = functools.partial(selection_near, description, package_path)
+                chosen = known(description, key, nearby)
+            elif isinstance(controllers, LaunchUse):
+                chosen = selection(description, controllers, (controllers,))
+            else:
+                chosen = Selection(files=tuple(map(Path, controllers or ())), names=())
+            for each in chosen.problems:
+                self.simulation.engine.report(each)
             spawned = self._spawn(
                 description,
-                files,
-                names,
+                chosen,
                 name=name,
                 pose=pose,
                 namespace=namespace,
                 frame_prefix=frame_prefix,
             )
-        self.spawned[spawned] = Spawned(files, names, tuple(package_path))
+        self.spawned[spawned] = Spawned(chosen.files, chosen.names, tuple(package_path))
         return spawned
 
-    def _spawn(
-        self,
-        description: RobotDescription,
-        controllers: Sequence[Path],
-        names: Sequence[str],
-        **options: Any,
-    ) -> str:
+    def _spawn(self, description: RobotDescription, controllers: Selection, **options: Any) -> str:
         files = self.shared.get(ControllerFiles)
-        files.paths, files.names = tuple(controllers), frozenset(names)
+        files.paths, files.names = controllers.files, frozenset(controllers.names)
         try:
             spawned = self.simulation.spawn(description, **options)
         finally:

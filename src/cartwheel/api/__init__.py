@@ -7,6 +7,7 @@ from cartwheel.api.exchange.faults import Fault
 from cartwheel.api.exchange.lockstep import Lockstep
 from cartwheel.api.exchange.serving import ServiceServer
 from cartwheel.api.joints import Joint, Joints
+from cartwheel.api.launching import launch
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
 from cartwheel.api.motion import Acceleration, Twist
@@ -66,5 +67,6 @@ __all__ = [
     "World",
     "WorldDescription",
     "build",
+    "launch",
     "seconds",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -11,7 +11,7 @@ import numpy as np
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.files import ARGUMENT_UNKNOWN, INCLUDE_ABSENT
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import CartwheelError, Code, DescriptionError
+from cartwheel.errors import CartwheelError, Code, DescriptionError, Diagnostic
 
 T = TypeVar("T", bound=str | Path)
 
@@ -79,7 +79,18 @@ def check_xacro_arguments(robot: RobotDescription, ignored: Collection[Code] = (
     """
     if any(each.code is INCLUDE_ABSENT for each in robot.diagnostics):
         return
-    for each in robot.diagnostics:
+    refuse_unknown_arguments(robot.diagnostics, ignored)
+
+
+def refuse_unknown_arguments(
+    diagnostics: Iterable[Diagnostic], ignored: Collection[Code] = ()
+) -> None:
+    """Raises the first diagnostic of an argument that a file does not declare.
+
+    Raises:
+        DescriptionError: There is one.
+    """
+    for each in diagnostics:
         if each.code is ARGUMENT_UNKNOWN and each.code not in ignored:
             raise DescriptionError(
                 each.message, code=each.code, origin=each.origin, hint=each.hint,

@@ -55,8 +55,8 @@ RunNames = Annotated[
     list[str] | None,
     help.argument(
         "[FILE] [NAME:=VALUE]...",
-        "Robot description (xacro, URDF or SDF), or the name of a bundled description. Default: "
-        "the bundled example cart, rosbots.xacro.",
+        "Robot description (xacro, URDF or SDF), the name of a bundled description, or a launch "
+        "file. Default: the bundled example cart, rosbots.xacro.",
     ),
 ]
 PackagePath = Annotated[

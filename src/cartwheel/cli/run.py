@@ -167,6 +167,9 @@ def run(
     FILE can also be a world, which is then simulated without a robot. NAME:=VALUE sets a xacro
     argument; world:=FILE is the same as --world.
 
+    Of a launch file, the models, their controllers and the world are started, without ROS.
+    NAME:=VALUE sets its arguments. The file is read, but not executed.
+
     With --ros1, arguments of a ROS 1 node are also accepted: __name:=NAME, _PARAMETER:=VALUE and
     /TOPIC:=NEW_NAME. If FILE is a world, TOPIC:=NEW_NAME is accepted, too.
     """

@@ -115,3 +115,15 @@ FILE_ELSEWHERE = Code(
     "warning",
     "a file is not where the description says, and the file of the same package is used",
 )
+LAUNCH_VALUE_UNKNOWN = Code(
+    "CW164",
+    "launch-value-unknown",
+    "warning",
+    "a value in a launch file is known only when the launch file is executed",
+)
+LAUNCH_WORLD_ABSENT = Code(
+    "CW165",
+    "launch-world-absent",
+    "warning",
+    "the world of a launch file was not found, and the empty world is used",
+)

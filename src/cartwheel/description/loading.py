@@ -18,8 +18,11 @@ from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.similar_names import meant
 
+_LAUNCHED = (
+    "cartwheel run and cartwheel.launch start it. Elsewhere, pass the description that it loads."
+)
 _OTHER_KINDS = {
-    "launch": ("a launch file", "Pass the description that the launch file loads."),
+    "launch": ("a launch file", _LAUNCHED),
     "package": ("a package manifest", "Pass a description from the package."),
     "COLLADA": ("a mesh", "Pass the description that uses the mesh."),
     "model": ("a model.config, or a <model> without <sdf> around it", ""),
@@ -186,6 +189,13 @@ def open_description(
 ) -> Opened:
     """Finds and reads a file, and expands its xacro."""
     found = find_description(path, package_path)
+    if found.suffix == ".py":
+        raise DescriptionError(
+            "the file is a launch file",
+            code=codes.NOT_A_DESCRIPTION,
+            origin=Origin(file=str(found)),
+            hint=_LAUNCHED,
+        )
     content = xml.read_bytes(found)
     packages = Packages(found, package_path, reach=reach, arguments=arguments.values())
     return _expand(content, xml.shown_path(found), packages, arguments)

@@ -88,6 +88,10 @@ class Report(Observer):
         simulation.engine.on_diagnostic.append(self.diagnostic)
         self._topics(session)
 
+    def launched(self, file: PurePath) -> None:
+        """Prints the launch file, of which only the models and their controllers start."""
+        self._line("launch", f"{file}; nodes other than models and controllers are not started")
+
     def viewer_shown(self, url: str, access: Access) -> None:
         """Prints the address of the viewer, and who can connect."""
         self._line("viewer", paint(url, "bold", "cyan"))

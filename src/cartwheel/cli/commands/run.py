@@ -25,6 +25,7 @@ from cartwheel.gate.access import Access
 from cartwheel.messages.store import finding_with
 
 if TYPE_CHECKING:
+    from cartwheel.assembly.launched import Launched
     from cartwheel.assembly.viewer import AnnouncedViewer
     from cartwheel.description.model import RobotDescription, WorldDescription
     from cartwheel.session import Session
@@ -64,11 +65,12 @@ def simulate(options: Options) -> None:
 
 def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
     others = running()
-    world, robot, remappings = _read(options)
+    launched, remappings = _read(options)
+    world, models = launched.world, launched.models
     if not options.headless:
         refuse_taken(options.host, options.port)
     # The engine is imported only after the files have been checked.
-    from cartwheel.control.place import placed
+    from cartwheel.assembly.launched import spawn_all
     from cartwheel.session import Session
 
     session = Session(
@@ -78,29 +80,23 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         lenient=not options.strict,
         bridge=options.bridge,
         plugins=options.plugins,
-        allow_path=(*options.allow_path, *run_folders(_files(world, robot))),
+        allow_path=(
+            *options.allow_path,
+            *run_folders(_files(world, *(each.description for each in models))),
+        ),
         package_path=options.package_path,
         without=options.without,
     )
     session.simulation.faults.tolerant = not options.strict
-    name = None
-    if robot is None and options.controllers:
+    if not models and options.controllers:
         raise CartwheelError(
             "--controllers requires a robot, but the file describes a world",
             code=OPTIONS_CONFLICT,
             hint="Pass a robot file.",
             values={"option": "--controllers"},
         )
-    if robot is not None:
-        pose = placed(robot.pose, options.place)
-        automatic = options.controllers == (Path("auto"),)
-        name = session.spawn(
-            robot,
-            name=options.model,
-            pose=pose,
-            controllers="auto" if automatic else options.controllers,
-            package_path=options.package_path,
-        )
+    names = spawn_all(session, launched, options.package_path)
+    name = names[0] if names else None
     session.report_unbridged()
     where = world_title(world)
     title = f"{name} in {where}" if name else where
@@ -118,6 +114,8 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         viewer = _viewer(assembly, options)
         if others:
             report.others(others)
+        if launched.file is not None:
+            report.launched(launched.file)
         report.loaded(session, name, ros=ros)
         plan = options.plan
         plan = replace(plan, ros1_arguments=(*plan.ros1_arguments, *remappings))
@@ -141,18 +139,29 @@ def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterato
             yield each.origin.file
 
 
-def _read(
-    options: Options,
-) -> tuple[WorldDescription, RobotDescription | None, tuple[str, ...]]:
-    """The world, the robot if there is one, and ROS's remappings among the arguments."""
+def _read(options: Options) -> tuple[Launched, tuple[str, ...]]:
+    """The world, the models, and ROS's remappings among the arguments."""
+    from cartwheel.assembly.launched import Launched, Start, open_launch
+    from cartwheel.control.place import placed
     from cartwheel.description import load, load_world
+    from cartwheel.description.launches import is_launch_file
     from cartwheel.description.model import WorldDescription
 
-    values = dict(options.values)
+    values, path = dict(options.values), options.package_path
+    file = options.file or ROBOT
+    automatic = options.controllers == (Path("auto"),)
+    if is_launch_file(Path(file)):
+        launched = open_launch(Path(file), values, world=options.world, package_path=path)
+        first, *others = launched.models
+        first = replace(first, name=options.model or first.name)
+        if options.place:
+            first = replace(first, pose=placed(first.pose or first.description.pose, options.place))
+        if options.controllers and not automatic:
+            first = replace(first, controllers=options.controllers)
+        return replace(launched, models=(first, *others)), ()
     # As in a launch file: world:=arena.world.
     named = options.world or values.pop("world", None)
-    file = options.file or ROBOT
-    found = load(file, arguments=values, package_path=options.package_path)
+    found = load(file, arguments=values, package_path=path)
     if isinstance(found, WorldDescription):
         if named:
             raise CartwheelError(
@@ -171,10 +180,16 @@ def _read(
         if options.plan.ros1 is not None and values:
             # Without a xacro, they cannot be xacro arguments.
             remappings = tuple(f"{name}:={value}" for name, value in values.items())
-            found = load_world(file, package_path=options.package_path)
-        return found, None, remappings
+            found = load_world(file, package_path=path)
+        return Launched(world=found), remappings
     fallback = WORLD if options.file is None else "empty"
-    return load_world(named or fallback, package_path=options.package_path), found, ()
+    robot = Start(
+        description=found,
+        name=options.model,
+        pose=placed(found.pose, options.place),
+        controllers="auto" if automatic else options.controllers,
+    )
+    return Launched(world=load_world(named or fallback, package_path=path), models=(robot,)), ()
 
 
 def _pacer(session: Session, options: Options) -> Pacer:

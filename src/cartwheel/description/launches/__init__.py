@@ -1,6 +1,22 @@
 """Reads launch files: the descriptions, xacro arguments and controller files that they name."""
 
 from cartwheel.description.launches.search import chosen, controllers_for, launches_near, root_of
+from cartwheel.description.launches.start import (
+    LaunchedModel,
+    LaunchStart,
+    is_launch_file,
+    read_launch,
+)
 from cartwheel.description.launches.use import LaunchUse
 
-__all__ = ["LaunchUse", "chosen", "controllers_for", "launches_near", "root_of"]
+__all__ = [
+    "LaunchStart",
+    "LaunchUse",
+    "LaunchedModel",
+    "chosen",
+    "controllers_for",
+    "is_launch_file",
+    "launches_near",
+    "read_launch",
+    "root_of",
+]

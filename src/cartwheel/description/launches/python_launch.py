@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -11,6 +10,14 @@ from typing import Any
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.effort import LONGEST
 from cartwheel.description.launches.evaluation import evaluated
+from cartwheel.description.launches.python_functions import (
+    FIRST,
+    JOINS,
+    OUTPUTS,
+    PASSED,
+    SAME,
+    SHARES,
+)
 from cartwheel.description.launches.python_values import (
     NOTHING,
     Unknown,
@@ -23,57 +30,8 @@ from cartwheel.description.launches.python_values import (
     path_of,
     text,
 )
+from cartwheel.description.launches.spawning import split
 from cartwheel.description.launches.use import Facts
-
-_JOINS = frozenset({"join", "joinpath", "PathJoinSubstitution"})
-_SHARES = frozenset(
-    {
-        "get_package_share_directory",
-        "get_package_share_path",
-        "FindPackageShare",
-        "FindPackage",
-        "get_package_prefix",
-        "FindPackagePrefix",
-    }
-)
-_SAME = frozenset(
-    {
-        "str",
-        "Path",
-        "TextSubstitution",
-        "ParameterValue",
-        "ParameterFile",
-        "PythonLaunchDescriptionSource",
-        "XMLLaunchDescriptionSource",
-        "AnyLaunchDescriptionSource",
-        "FrontendLaunchDescriptionSource",
-        "abspath",
-        "realpath",
-        "normpath",
-        "expanduser",
-        "dict",
-        "list",
-        "RewrittenYaml",
-        "ReplaceString",
-    }
-)
-"""Functions whose value is that of their first argument, or of a keyword in `_FIRST`."""
-_FIRST = ("text", "source_file", "value", "param_file")
-_PASSED = frozenset(
-    {
-        "items",
-        "perform",
-        "toxml",
-        "toprettyxml",
-        "read",
-        "read_text",
-        "as_posix",
-        "strip",
-        "resolve",
-    }
-)
-"""Methods whose value is that of the object."""
-
 
 _MOST_TURNS = 500
 """Maximum number of times that the bodies of all loops of a file are evaluated."""
@@ -260,8 +218,8 @@ class _Reader:
         words = {each.arg: self.value(each.value) for each in node.keywords if each.arg}
         if not named:
             return NOTHING
-        first = places[0] if places else next((words[w] for w in _FIRST if w in words), NOTHING)
-        if name in _JOINS:
+        first = places[0] if places else next((words[w] for w in FIRST if w in words), NOTHING)
+        if name in JOINS:
             parts = [*([] if isinstance(holder, Unknown) else [holder]), *places]
             return path_of(parts)
         if name in ("append", "extend") and isinstance(holder, list):
@@ -269,13 +227,13 @@ class _Reader:
             if isinstance(more, list) and len(holder) + len(more) <= LONGEST:
                 holder += more
             return NOTHING
-        if name in _SHARES:
+        if name in SHARES:
             return self._facts.package(text(words.get("package", first)))
-        if name in _SAME:
+        if name in SAME:
             return words if name == "dict" and words else first
         if name == "dirname":
             return str(PurePosixPath(text(first)).parent)
-        if name == "open" or name in _PASSED:
+        if name == "open" or name in PASSED:
             return first if name == "open" else holder
         if name in ("process_file", "process", "process_doc"):
             # For process_doc, the document is the text of the file that xacro.parse has read.
@@ -283,6 +241,10 @@ class _Reader:
         if name in ("safe_load", "full_load", "load") and _is_module(node.func, "yaml"):
             # A file that was opened is its path.
             return loaded(text(first), self._facts.effort)
+        if name in OUTPUTS:
+            said = first if isinstance(first, list) else [first]
+            self._facts.describe(" ".join(map(joined, said)))
+            return _Description()
         if name == "parse":
             return first if _is_module(node.func, "xacro") else NOTHING
         maker = _ACTIONS.get(name)
@@ -307,6 +269,8 @@ class _Reader:
     def declaration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Stores the default of a launch argument."""
         name = text(words.get("name", first))
+        if not self._depth:
+            self._facts.declared.add(name)
         if "default_value" in words and name not in self.defaults:
             self.defaults[name] = joined(words["default_value"])
         if not self._depth and name not in self._given and name in self.defaults:
@@ -353,10 +317,7 @@ class _Reader:
         arguments = words.get("arguments", [])
         texts = [joined(each) for each in arguments] if isinstance(arguments, list) else []
         if len(texts) == 1 and " " in texts[0]:
-            try:
-                texts = shlex.split(texts[0])
-            except ValueError:
-                texts = []
+            texts = split(texts[0])
         package = text(words.get("package", ""))
         executable = text(words.get("executable", words.get("node_executable", "")))
         self._facts.node(package, executable, texts)
@@ -364,6 +325,14 @@ class _Reader:
             for each in words["parameters"]:
                 if isinstance(each, str | list):
                     self._facts.parameters(joined(each))
+        return NOTHING
+
+    def process(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Adds what a command starts."""
+        parts = words.get("cmd", first)
+        if isinstance(parts, list):
+            said = [joined(each) for each in parts]
+            self._facts.command(split(said[0]) if len(said) == 1 else said)
         return NOTHING
 
 
@@ -379,6 +348,7 @@ def _is_module(function: ast.expr, name: str) -> bool:
 _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]] = {
     "Command": _Reader.command,
     "DeclareLaunchArgument": _Reader.declaration,
+    "ExecuteProcess": _Reader.process,
     "FindExecutable": _Reader.executable,
     "IncludeLaunchDescription": _Reader.inclusion,
     "LaunchConfiguration": _Reader.configuration,

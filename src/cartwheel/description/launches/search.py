@@ -50,19 +50,19 @@ def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterato
     packages: dict[Path, Packages] = {}
     for path in _files(folder, effort):
         near = packages.setdefault(path.parent, Packages(path, package_path))
-        facts = _facts(path, near, {}, effort)
-        yield from _uses(path, facts)
+        facts = facts_of(path, near, {}, effort)
+        yield from uses_of(path, facts)
         known = {description for description, _ in facts.descriptions}
         for given in _others(facts):
-            other = _facts(path, near, given, effort)
+            other = facts_of(path, near, given, effort)
             new = [each for each in other.descriptions if each[0] not in known]
             known |= {description for description, _ in new}
             other.descriptions = new
             if new:
-                yield from _uses(path, other, given.values())
+                yield from uses_of(path, other, given.values())
 
 
-def _facts(path: Path, packages: Packages, arguments: Mapping[str, str], effort: Effort) -> Facts:
+def facts_of(path: Path, packages: Packages, arguments: Mapping[str, str], effort: Effort) -> Facts:
     """The contents of a launch file that is started with these arguments."""
     home = package_above(path.parent)
     facts = Facts(find=packages.found, read=_read, home=home, effort=effort)
@@ -92,7 +92,7 @@ def _others(facts: Facts) -> list[dict[str, str]]:
     return list(itertools.islice(found, _VARIANTS))
 
 
-def _uses(path: Path, facts: Facts, words: Collection[str] = ()) -> list[LaunchUse]:
+def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[LaunchUse]:
     """What a launch file starts; `words` are the values of arguments without their defaults."""
     described: list[tuple[Path | None, dict[str, str]]] = [*facts.descriptions]
     if not described and facts.yamls:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 import shlex
 from collections.abc import Callable, Mapping
@@ -10,8 +9,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cartwheel import yaml_text
-from cartwheel.description.files.package_folders import is_file
+from cartwheel.description.files.package_folders import is_file, package_name
 from cartwheel.description.launches.effort import UNKNOWN, Effort
+from cartwheel.description.launches.spawning import (
+    MODEL_SPAWNERS,
+    Spawn,
+    spawn_of,
+    split,
+    world_in,
+)
 from cartwheel.errors import CartwheelError
 
 _LOOK = 100
@@ -23,6 +29,8 @@ SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
 _SPAWNERS = frozenset(
     {"spawn_model", "spawn_entity.py", "create", "gzserver", "gzclient", "gz_sim", "gazebo"}
 )
+_SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
+"""Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
@@ -99,6 +107,11 @@ class Facts:
     yamls: list[Path] = field(default_factory=list)
     spawned: list[str] = field(default_factory=list)
     simulated: bool = False
+    spawns: list[Spawn] = field(default_factory=list)
+    world: str = ""
+    """The world as it is stated; empty if none is."""
+    declared: set[str] = field(default_factory=set)
+    """Names of the arguments of the launch file itself."""
     count: int = 0
     """Number of files that were read."""
     defaults: dict[str, str] = field(default_factory=dict)
@@ -148,21 +161,45 @@ class Facts:
         if file is None or UNKNOWN in str(file.parent):
             return
         if UNKNOWN not in file.name:
+            file = self._here(file)
             if is_file(file):
                 self.descriptions.append((file, dict(arguments)))
         elif re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")):
             known = {**arguments, "": UNKNOWN}
             self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
 
+    def _here(self, file: Path) -> Path:
+        """An absent file at its place in the package, such as ~/ws/src/bot/bot.urdf."""
+        if self.home is None or is_file(file):
+            return file
+        for name in (self.home.name, package_name(self.home)):
+            if name in file.parts:
+                last = len(file.parts) - file.parts[::-1].index(name)
+                return self.home.joinpath(*file.parts[last:])
+        return file
+
     def node(self, package: str, executable: str, words: list[str]) -> None:
         """Adds what a node with these arguments starts: models or controllers."""
         if package in ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz"):
             self.simulated |= executable in _SPAWNERS
-            for flag, word in itertools.pairwise(words):
-                if flag in ("-file", "-f", "--file"):
-                    self.add(Path(word), {})
+            if executable in MODEL_SPAWNERS:
+                spawn = spawn_of(words)
+                self.spawns.append(spawn)
+                if spawn.file is not None:
+                    self.add(spawn.file, {})
+            else:
+                self._begin(world_in(words))
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
             self._spawn(words)
+
+    def command(self, words: list[str]) -> None:
+        """Adds what a command starts, such as ``gazebo arena.world``."""
+        if words and words[0].rsplit("/", 1)[-1] in _SERVERS:
+            self.simulated = True
+            self._begin(world_in(words))
+
+    def _begin(self, world: str) -> None:
+        self.world = self.world or world.strip()
 
     def _spawn(self, words: list[str]) -> None:
         skip = False
@@ -195,7 +232,12 @@ class Facts:
 
     def include(self, text: str, arguments: Mapping[str, str], depth: int) -> None:
         """Reads an included launch file if it exists."""
-        self.simulated |= bool(_WORLD.search(text.rsplit("/", 1)[-1]))
+        if _WORLD.search(text.rsplit("/", 1)[-1]):
+            self.simulated = True
+            for name in ("world_name", "world"):
+                self._begin(arguments.get(name, ""))
+            for name in ("gz_args", "ign_args"):
+                self._begin(world_in(split(arguments.get(name, ""))))
         if UNKNOWN in text or depth >= DEEPEST:
             return
         path = Path(text.strip())

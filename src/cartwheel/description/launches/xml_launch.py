@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shlex
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.expressions import Function
 from cartwheel.description.launches.effort import UNKNOWN, limited
 from cartwheel.description.launches.evaluation import evaluated
+from cartwheel.description.launches.spawning import split
 from cartwheel.description.launches.use import Facts
 
 _CALL = re.compile(r"\$\(\s*+([\w-]++)\s*+([^()]*+)\)")
@@ -73,12 +73,14 @@ class _Reader:
         elif tag == "node":
             kind = "exec" if "exec" in node.attributes else "type"
             facts.node(
-                self._value(node, "pkg"), self._value(node, kind), _words(self._value(node, "args"))
+                self._value(node, "pkg"), self._value(node, kind), split(self._value(node, "args"))
             )
             self.group(node)
 
     def _argument(self, node: Node) -> None:
         name = node.attributes.get("name", "")
+        if not self._depth:
+            self._facts.declared.add(name)
         if "value" in node.attributes:
             self._arguments[name] = self._value(node, "value")
         elif name not in self._given and "default" in node.attributes:
@@ -170,13 +172,6 @@ def _without_calls(line: str) -> str:
     """A line in which the text from the first ``$(`` to the last ``)`` is unknown."""
     begin, end = line.find("$("), line.rfind(")")
     return f"{line[:begin]}{UNKNOWN}{line[end + 1 :]}" if 0 <= begin < end else line
-
-
-def _words(text: str) -> list[str]:
-    try:
-        return shlex.split(text)
-    except ValueError:
-        return text.split()
 
 
 def _certain(text: str) -> str:

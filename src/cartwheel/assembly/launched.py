@@ -1,0 +1,143 @@
+"""The models and the world of a launch file, read without ROS and without executing it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from cartwheel.codes import files as codes
+from cartwheel.control.place import placed
+from cartwheel.description import load_robot, load_world
+from cartwheel.description.files.named_files import bundled_worlds
+from cartwheel.description.launches import LaunchedModel, LaunchStart, LaunchUse, read_launch
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.geometry import Pose
+
+if TYPE_CHECKING:
+    from cartwheel.session import Session
+
+EMPTY = "empty"
+"""The world if none is stated."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Start:
+    """A model to spawn."""
+
+    description: RobotDescription
+    name: str | None = None
+    """None for the name in the description."""
+    pose: Pose | None = None
+    """None for the pose in the description."""
+    namespace: str = "/"
+    controllers: LaunchUse | Sequence[Path] | Literal["auto"] = ()
+    """As for `Session.spawn`."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Launched:
+    """The beginning of a simulation."""
+
+    world: WorldDescription
+    models: tuple[Start, ...] = ()
+    """The models to spawn in it."""
+    file: Path | None = None
+    """The launch file, if there is one."""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """What of a launch file is not as it states."""
+
+
+def open_launch(
+    file: Path,
+    arguments: Mapping[str, str],
+    *,
+    world: str | None = None,
+    package_path: Sequence[Path] = (),
+) -> Launched:
+    """Reads the world and the models of a launch file.
+
+    Args:
+        file: The launch file.
+        arguments: Its arguments.
+        world: The world instead of its own.
+        package_path: Folders to search for packages first.
+
+    Raises:
+        DescriptionError: A description cannot be read, or is known only when the launch file is
+            executed.
+    """
+    start = read_launch(file, arguments, package_path)
+    found = list(start.diagnostics)
+    if world is not None:
+        found = [each for each in found if each.values.get("what") != "world"]
+    opened = load_world(world, package_path=package_path) if world else None
+    return Launched(
+        world=opened or _world(start, package_path, found),
+        models=tuple(_start(each, package_path) for each in start.models),
+        file=file,
+        diagnostics=tuple(found),
+    )
+
+
+def spawn_all(session: Session, launched: Launched, package_path: Sequence[Path] = ()) -> list[str]:
+    """Spawns the models and reports the diagnostics; returns the names of the models.
+
+    Args:
+        session: A session with the world.
+        launched: The beginning of the simulation.
+        package_path: Folders to search for packages first.
+    """
+    with session.spawning():
+        names = [
+            session.spawn(
+                each.description,
+                name=each.name,
+                pose=each.pose,
+                namespace=each.namespace,
+                controllers=each.controllers,
+                package_path=package_path,
+            )
+            for each in launched.models
+        ]
+    for each in launched.diagnostics:
+        session.simulation.engine.report(each)
+    return names
+
+
+def _world(
+    start: LaunchStart, package_path: Sequence[Path], found: list[Diagnostic]
+) -> WorldDescription:
+    """The world that the launch file states; a bundled one, if there is none of that name."""
+    stated = start.world or EMPTY
+    try:
+        return load_world(stated, package_path=package_path)
+    except DescriptionError as error:
+        if error.code not in (codes.FILE_MISSING, codes.FILE_ON_NETWORK):
+            raise
+    name = Path(stated).stem
+    if name not in bundled_worlds():
+        name = EMPTY
+        found.append(
+            codes.LAUNCH_WORLD_ABSENT.diagnostic(
+                f'the world "{stated}" was not found, and the empty world is used',
+                origin=Origin(file=str(start.file)),
+                values={"name": stated},
+                hint="Pass a world with --world.",
+            )
+        )
+    return load_world(name)
+
+
+def _start(model: LaunchedModel, package_path: Sequence[Path]) -> Start:
+    spawn, use = model.spawn, model.use
+    robot = load_robot(model.description, arguments=use.arguments, package_path=package_path)
+    return Start(
+        description=robot,
+        name=spawn.name or None,
+        pose=placed(robot.pose, spawn.place),
+        namespace=spawn.namespace or "/",
+        controllers=use,
+    )

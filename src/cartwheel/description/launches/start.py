@@ -1,0 +1,184 @@
+"""What a launch file starts: models in a world."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from cartwheel.codes import files as codes
+from cartwheel.description.elements import xml
+from cartwheel.description.files.package_folders import is_file
+from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
+from cartwheel.description.launches.search import facts_of, uses_of
+from cartwheel.description.launches.spawning import Spawn
+from cartwheel.description.launches.use import Facts, LaunchUse
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.similar_names import meant, suggestion
+
+_ENDS = (".launch", ".launch.xml", ".py")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LaunchedModel:
+    """A model that a launch file spawns."""
+
+    description: Path
+    use: LaunchUse
+    """The arguments of the description, and the controllers that the launch file starts."""
+    spawn: Spawn
+    """Its name and place."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LaunchStart:
+    """What a launch file starts."""
+
+    file: Path
+    models: tuple[LaunchedModel, ...]
+    """At least one."""
+    world: str
+    """The world as the launch file states it; empty if it states none or an unknown one."""
+    diagnostics: tuple[Diagnostic, ...]
+    """Arguments without an effect, and what only the execution of the launch file determines."""
+
+
+def is_launch_file(path: Path) -> bool:
+    """Whether an existing file is a launch file in XML or Python."""
+    if not is_file(path):
+        return False
+    if path.name.endswith(_ENDS):
+        return True
+    root = xml.readable_file(path) if path.suffix == ".xml" else None
+    return root is not None and root.tag == "launch"
+
+
+def read_launch(
+    file: Path, arguments: Mapping[str, str], package_path: Sequence[Path] = ()
+) -> LaunchStart:
+    """Reads what a launch file starts, without executing it.
+
+    Args:
+        file: The launch file.
+        arguments: Its arguments.
+        package_path: Folders to search for packages first.
+
+    Raises:
+        DescriptionError: The file does not exist or is no launch file, or its models cannot be
+            determined.
+    """
+    if not is_launch_file(file):
+        missing = not is_file(file)
+        raise DescriptionError(
+            "the file does not exist" if missing else "the file is not a launch file",
+            code=codes.FILE_MISSING if missing else codes.NOT_A_DESCRIPTION,
+            origin=Origin(file=str(file)),
+            values={"kind": "file", "name": str(file), "meant": ""},
+            hint="" if missing else "Its name must end in .launch, .launch.xml or .py.",
+        )
+    effort = Effort()
+    try:
+        facts = facts_of(file, Packages(file, package_path), arguments, effort)
+        uses = [each for each in uses_of(file, facts) if each.description is not None]
+    except TooCostlyError:
+        raise _failure(file, "reading the launch file takes too long") from None
+    models = tuple(_models(facts, uses))
+    if not models:
+        raise _failure(file, "the launch file names no description that exists")
+    world = facts.world
+    if not world and file.suffix == ".py":
+        # Included launch files inherit the arguments, such as `world` of gazebo.launch.py.
+        world = arguments.get("world", facts.defaults.get("world", ""))
+    found = [*_unused(file, arguments, facts), *_unknown(file, world, models, facts)]
+    return LaunchStart(
+        file=file,
+        models=models,
+        world="" if UNKNOWN in world else world,
+        diagnostics=tuple(found),
+    )
+
+
+def _unknown(
+    file: Path, world: str, models: Sequence[LaunchedModel], facts: Facts
+) -> Iterator[Diagnostic]:
+    """What only the execution of a launch file determines."""
+    if UNKNOWN in world:
+        yield _lost(file, "the world is unknown", "Pass it with --world.", what="world")
+    count = max(each.use.unknown for each in models)
+    if count:
+        yield _lost(
+            file,
+            f"the values of {count} xacro argument{'s' * (count > 1)} are unknown, so the defaults "
+            "are used",
+            what="arguments",
+        )
+    if any(each.spawn.unknown for each in models):
+        yield _lost(file, "a part of the pose of a model is unknown", what="place")
+    used = [each.spawn for each in models]
+    for spawn in facts.spawns:
+        if spawn not in used:
+            shown = f'"{spawn.name}"' if spawn.name else "a model"
+            yield _lost(
+                file,
+                f"{shown} is not spawned, because its description is unknown or does not exist",
+                what="model",
+                name=spawn.name,
+            )
+
+
+def _lost(file: Path, text: str, hint: str = "", **values: str) -> Diagnostic:
+    return codes.LAUNCH_VALUE_UNKNOWN.diagnostic(
+        f"{text}: launch files are read, but not executed",
+        origin=Origin(file=str(file)),
+        hint=hint,
+        values=values,
+    )
+
+
+def _models(facts: Facts, uses: Sequence[LaunchUse]) -> list[LaunchedModel]:
+    """The spawned models; without any, the model that is only shown."""
+    files = {each.file for each in facts.spawns}
+    published = [each for each in uses if each.description not in files] or list(uses)
+    found = []
+    for spawn in facts.spawns or [Spawn(file=None, place={})]:
+        fitting = [each for each in uses if each.description == spawn.file]
+        if spawn.file is None:
+            fitting = published
+        if fitting and (use := fitting[0]).description is not None:
+            found.append(LaunchedModel(description=use.description, use=use, spawn=spawn))
+    return found
+
+
+def _unused(file: Path, arguments: Mapping[str, str], facts: Facts) -> list[Diagnostic]:
+    return [
+        codes.ARGUMENT_UNKNOWN.diagnostic(
+            f'the argument "{name}" has no effect: the launch file does not declare it',
+            origin=Origin(file=str(file)),
+            values={"name": name, "meant": meant(name, facts.declared)},
+            hint=suggestion(name, sorted(facts.declared)),
+        )
+        for name in arguments
+        if name not in facts.declared
+    ]
+
+
+def _failure(file: Path, reason: str) -> DescriptionError:
+    try:
+        line = 1 if file.suffix == ".py" else xml.read_file(file).origin.line
+    except DescriptionError as error:
+        return error
+    if file.suffix == ".py":
+        try:
+            ast.parse(read_regular_text(file))
+        except (OSError, SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            line = getattr(error, "lineno", None) or line
+            reason = f"the file is not Python: {getattr(error, 'msg', error)}"
+    return DescriptionError(
+        reason,
+        code=codes.NOT_A_DESCRIPTION,
+        origin=Origin(file=str(file), line=line),
+        hint="Launch files are read, but not executed. Pass the description that it loads.",
+    )

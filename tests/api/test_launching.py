@@ -1,0 +1,136 @@
+"""Worlds with the models of a launch file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.coded import coded, raises
+
+import cartwheel as cw
+from cartwheel.codes.files import (
+    ARGUMENT_UNKNOWN,
+    LAUNCH_VALUE_UNKNOWN,
+    LAUNCH_WORLD_ABSENT,
+    NOT_A_DESCRIPTION,
+)
+from cartwheel.codes.world import MODEL_NAME_TAKEN
+
+TWO = """<launch>
+  <arg name="arena" default="$(find carts)/worlds/hall.world"/>
+  <include file="$(find gazebo_ros)/launch/empty_world.launch">
+    <arg name="world_name" value="$(arg arena)"/></include>
+  <param name="robot_description" command="xacro $(find carts)/urdf/cart.xacro"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="a"
+    args="-urdf -param robot_description -model left -y 2 -robot_namespace left"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="b"
+    args="-urdf -param robot_description -model NAME -y -2 -robot_namespace right"/>
+</launch>"""
+CART = """<robot name="cart" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="mass" default="2"/>
+<link name="base"><inertial><mass value="$(arg mass)"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+<gazebo><plugin name="move" filename="libgazebo_ros_planar_move.so">
+<commandTopic>cmd_vel</commandTopic><odometryTopic>odom</odometryTopic></plugin></gazebo></robot>"""
+HALL = """<sdf version="1.6"><world name="hall"><model name="pillar"><static>true</static>
+<pose>5 0 0.5 0 0 0</pose><link name="link"><collision name="c"><geometry>
+<box><size>1 1 1</size></box></geometry></collision></link></model></world></sdf>"""
+SLIDER = """<robot name="slider"><link name="base"><inertial><mass value="5"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="bar"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="world"/>
+  <joint name="foot" type="fixed"><parent link="world"/><child link="base"/></joint>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="bar"/><axis xyz="1 0 0"/>
+  <limit lower="-1" upper="1" effort="100" velocity="5"/></joint>
+  <ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin>
+  </hardware><joint name="slide"><command_interface name="position"/>
+  <state_interface name="position"/></joint></ros2_control>
+  <gazebo><plugin filename="gz_ros2_control-system"
+    name="gz_ros2_control::GazeboSimROS2ControlPlugin"/></gazebo></robot>"""
+CONTROLLERS = """
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    good: {type: position_controllers/JointGroupPositionController}
+    other: {type: position_controllers/JointGroupPositionController}
+good:
+  ros__parameters: {joints: [slide]}
+other:
+  ros__parameters: {joints: [slide]}
+"""
+STARTER = """
+def generate_launch_description():
+    share = get_package_share_directory("carts")
+    file = os.path.join(share, "config", "control.yaml")
+    xacro.process_file(os.path.join(share, "urdf", "slider.urdf"))
+    return [
+        Node(package="controller_manager", executable="ros2_control_node", parameters=[file]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+        Node(package="controller_manager", executable="spawner", arguments=["good"]),
+    ]
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    folder = tmp_path / "carts"
+    texts = {
+        "package.xml": "<package><name>carts</name></package>",
+        "urdf/cart.xacro": CART,
+        "urdf/slider.urdf": SLIDER,
+        "config/control.yaml": CONTROLLERS,
+        "worlds/hall.world": HALL,
+        "launch/two.launch": TWO.replace("NAME", "right"),
+        "launch/twins.launch": TWO.replace("NAME", "left"),
+        "launch/slider.launch.py": STARTER,
+    }
+    for name, text in texts.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    return folder
+
+
+def test_two_robots_of_a_launch_file_drive_in_its_world(package: Path) -> None:
+    with cw.launch(package / "launch/two.launch", seed=3) as world:
+        assert world.models == ("pillar", "left", "right")
+        assert [round(world.model(name).pose.y, 6) for name in ("left", "right")] == [2.0, -2.0]
+        world.publish("/right/cmd_vel", linear_x=1.0)
+        world.run(1.0)
+        assert world.model("right").pose.x > 0.9
+        assert abs(world.model("left").pose.x) < 1e-3
+
+
+def test_the_launch_file_starts_the_controllers_that_it_names(package: Path) -> None:
+    with cw.launch(package / "launch/slider.launch.py") as world:
+        world.publish("/good/commands", data=[0.5])
+        world.run(1.0)
+        assert world.model("slider").joint("slide") == pytest.approx(0.5, abs=1e-3)
+        assert "/other/commands" not in {each.name for each in world.session.graph.topics()}
+
+
+def test_another_world_and_arguments(package: Path) -> None:
+    file = package / "launch/two.launch"
+    with cw.launch(file, world="empty") as world:
+        assert "pillar" not in world.models
+    with cw.launch(file, {"arena": "worlds/willow.world"}) as world:
+        (found,) = coded(world, LAUNCH_WORLD_ABSENT)
+        assert found.values == {"name": "worlds/willow.world"}
+        assert "left" in world.models
+    with cw.launch(file, {"arena": "worlds/mud.world"}) as world:
+        assert not coded(world, LAUNCH_WORLD_ABSENT)
+    with raises(ARGUMENT_UNKNOWN):
+        cw.launch(file, {"aerna": "mud"})
+
+
+def test_errors_of_a_launch_file(package: Path) -> None:
+    with raises(MODEL_NAME_TAKEN):
+        cw.launch(package / "launch/twins.launch")
+    with raises(NOT_A_DESCRIPTION):
+        cw.launch(package / "urdf/cart.xacro")
+    with raises(NOT_A_DESCRIPTION):
+        cw.World().spawn(package / "launch/slider.launch.py")
+    (package / "launch/two.launch").write_text(TWO.replace("$(arg arena)", "$(env NO_SUCH_ARENA)"))
+    with cw.launch(package / "launch/two.launch") as world:
+        assert [each.values for each in coded(world, LAUNCH_VALUE_UNKNOWN)] == [{"what": "world"}]

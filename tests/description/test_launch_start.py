@@ -1,0 +1,192 @@
+"""What a launch file starts: models, their places, and the world."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.coded import coded, raises
+
+from cartwheel.codes.files import (
+    ARGUMENT_UNKNOWN,
+    FILE_MISSING,
+    LAUNCH_VALUE_UNKNOWN,
+    NOT_A_DESCRIPTION,
+    XML_MALFORMED,
+)
+from cartwheel.description.launches import is_launch_file, read_launch
+
+ROS1 = """<launch>
+  <arg name="arena" default="$(find bot)/worlds/arena.world"/><arg name="height" default="0.2"/>
+  <include file="$(find gazebo_ros)/launch/empty_world.launch">
+    <arg name="world_name" value="$(arg arena)"/></include>
+  <param name="robot_description" command="xacro $(find bot)/urdf/bot.xacro size:=2"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="spawn"
+    args="-urdf -param robot_description -model one -x 1 -z $(arg height) -Y -0.5"/>
+</launch>"""
+ROS2 = """
+share = FindPackageShare(package="bot").find("bot")
+xacro = LaunchConfiguration("model")
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("model", default_value=os.path.join(share, "urdf", "bot.xacro")),
+        IncludeLaunchDescription(
+            PythonLaunchDescriptionSource(
+                [FindPackageShare("ros_gz_sim"), "/launch/gz_sim.launch.py"]),
+            launch_arguments={"gz_args": ["-r ", share, "/worlds/arena.world"]}.items(),
+        ),
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": Command(["xacro ", xacro, " size:=2"])}]),
+        Node(package="ros_gz_sim", executable="create",
+             arguments=["-topic", "robot_description", "-name", "one", "-x", "1", "-z", "0.2",
+                        "-Y", "-0.5"]),
+    ])
+"""
+
+
+@pytest.fixture
+def bot(tmp_path: Path) -> Path:
+    """A package with a robot and a world."""
+    folder = tmp_path / "bot"
+    for name in ("launch", "urdf", "worlds"):
+        (folder / name).mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>bot</name></package>")
+    for name in ("bot.xacro", "other.urdf"):
+        (folder / "urdf" / name).write_text('<robot name="bot"><link name="base"/></robot>')
+    (folder / "worlds" / "arena.world").write_text("<sdf version='1.6'><world name='a'/></sdf>")
+    return folder
+
+
+def written(bot: Path, name: str, text: str) -> Path:
+    path = bot / "launch" / name
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.launch", ROS1), ("a.launch.py", ROS2)])
+def test_a_model_with_its_place_in_a_world(bot: Path, name: str, text: str) -> None:
+    start = read_launch(written(bot, name, text), {})
+    (model,) = start.models
+    assert model.description == bot / "urdf/bot.xacro"
+    assert model.use.arguments == {"size": "2"}
+    assert model.spawn.name == "one"
+    assert model.spawn.place == {"x": 1.0, "z": 0.2, "yaw": -0.5}
+    assert Path(start.world) == bot / "worlds/arena.world"
+    assert start.diagnostics == ()
+
+
+def test_arguments_of_a_launch_file(bot: Path) -> None:
+    path = written(bot, "a.launch", ROS1)
+    start = read_launch(path, {"height": "3", "arena": "mud.world", "heigth": "4"})
+    assert start.models[0].spawn.place["z"] == 3.0
+    assert start.world == "mud.world"
+    (found,) = start.diagnostics
+    assert found.code is ARGUMENT_UNKNOWN
+    assert found.values == {"name": "heigth", "meant": "height"}
+
+
+def test_what_only_the_execution_determines_is_reported(bot: Path) -> None:
+    text = ROS1.replace("$(arg arena)", "$(anon arena)").replace("size:=2", "size:=$(anon x)")
+    text = text.replace("$(arg height)", "$(anon z)")
+    start = read_launch(written(bot, "a.launch", text), {})
+    assert start.world == ""
+    assert start.models[0].use.arguments == {}
+    assert start.models[0].spawn.place == {"x": 1.0, "yaw": -0.5}
+    assert [each.values["what"] for each in coded(start, LAUNCH_VALUE_UNKNOWN)] == [
+        "world",
+        "arguments",
+        "place",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("process", "world"),
+    [
+        ('["gazebo", "--verbose", "arena.world", "-s", "libgazebo_ros_factory.so"]', "arena.world"),
+        ('["gz sim -r arena.sdf"]', "arena.sdf"),
+        ('["rviz2", "-d", "arena.world"]', ""),
+    ],
+)
+def test_a_command_that_starts_gazebo_names_the_world(bot: Path, process: str, world: str) -> None:
+    described = f'xacro.process_file("{bot}/urdf/bot.xacro")\n'
+    path = written(bot, "a_launch.py", f"{described}ExecuteProcess(cmd={process})\n")
+    assert read_launch(path, {}).world == world
+
+
+def test_gazebos_launch_file_inherits_the_argument_world_in_ros_2(bot: Path) -> None:
+    text = 'DeclareLaunchArgument("world", default_value="arena.world")\n'
+    text += f'os.popen("xacro {bot}/urdf/bot.xacro").read()\n'
+    path = written(bot, "a.launch.py", text)
+    assert read_launch(path, {}).world == "arena.world"
+    assert read_launch(path, {"world": "mud.world"}).world == "mud.world"
+
+
+def test_each_spawned_model_has_its_file(bot: Path) -> None:
+    """A model from a file is not that of robot_description, and there may be several of one."""
+    nodes = "".join(
+        f'<node pkg="gazebo_ros" type="spawn_model" name="{name}" args="-model {name} '
+        f'-robot_namespace /{name} {source}"/>'
+        for name, source in (
+            ("a", "-urdf -file $(find bot)/urdf/other.urdf"),
+            ("b", "-param robot_description"),
+            ("c", "-param robot_description"),
+            ("d", "-sdf -file $(find bot)/absent.sdf"),
+        )
+    )
+    described = '<param name="robot_description" textfile="$(find bot)/urdf/bot.xacro"/>'
+    start = read_launch(written(bot, "a.launch", f"<launch>{nodes}{described}</launch>"), {})
+    assert [(each.spawn.name, each.description.name) for each in start.models] == [
+        ("a", "other.urdf"),
+        ("b", "bot.xacro"),
+        ("c", "bot.xacro"),
+    ]
+    assert [each.spawn.namespace for each in start.models] == ["a", "b", "c"]
+    (found,) = start.diagnostics
+    assert found.code is LAUNCH_VALUE_UNKNOWN and found.values == {"what": "model", "name": "d"}
+
+
+def test_a_description_that_is_only_shown_is_started(bot: Path) -> None:
+    text = (
+        '<launch><param name="robot_description" textfile="$(find bot)/urdf/bot.xacro"/></launch>'
+    )
+    (model,) = read_launch(written(bot, "display.launch", text), {}).models
+    assert model.description.name == "bot.xacro" and model.spawn.place == {}
+
+
+def test_an_absent_file_is_at_the_same_place_in_the_package(bot: Path) -> None:
+    """Launch files name places on the computers of their authors."""
+    text = 'xacro.process_file(os.path.expanduser("~/ws/src/bot/urdf/other.urdf"))\n'
+    (model,) = read_launch(written(bot, "a.launch.py", text), {}).models
+    assert model.description == bot / "urdf/other.urdf"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "code"),
+    [
+        ("absent.launch", None, FILE_MISSING),
+        ("a.launch", "<launch/>", NOT_A_DESCRIPTION),
+        ("a.launch", "<launch", XML_MALFORMED),
+        ("a.launch.py", "def (", NOT_A_DESCRIPTION),
+        ("a.xml", "<robot name='a'><link name='b'/></robot>", NOT_A_DESCRIPTION),
+        ("a.launch.py", "for a in l:\n" + " x = 1\n" * 10, NOT_A_DESCRIPTION),
+    ],
+)
+def test_a_launch_file_without_a_description_is_an_error(bot, name, text, code) -> None:
+    path = bot / "launch" / name if text is None else written(bot, name, text)
+    with raises(code):
+        read_launch(path, {})
+
+
+def test_launch_files_are_known_by_their_name_or_contents(bot: Path) -> None:
+    for name, text, expected in (
+        ("a.launch", "", True),
+        ("a.launch.xml", "", True),
+        ("a.launch.py", "", True),
+        ("start.py", "", True),
+        ("a.xml", "<launch/>", True),
+        ("b.xml", "<robot/>", False),
+        ("a.urdf", "<launch/>", False),
+    ):
+        assert is_launch_file(written(bot, name, text)) is expected, name
+    assert not is_launch_file(bot / "launch")
