@@ -86,6 +86,17 @@ def test_mesh_and_heightmap(tmp_path):
     )
 
 
+def test_a_heightmap_without_height_is_level_ground(tmp_path):
+    Image.new("L", (3, 3), 255).save(tmp_path / "field.png")
+    field = "<heightmap><uri>field.png</uri><size>10 10 0.0</size></heightmap>"
+    ground = f'<model name="m"><link name="l"><collision name="c"><geometry>{field}</geometry>'
+    text = f'<sdf version="1.9">{ground}</collision></link></model></sdf>'
+    found = read_sdf(parse(text, str(tmp_path / "m.sdf")), Packages(environment={}))
+    assert found.links[0].collisions[0].shape.size == (10, 10, 0.001)
+    (warning,) = (each for each in found.diagnostics if each.severity == "warning")
+    assert (warning.code, warning.values["stated"]) == (tags.VALUE_IGNORED, "10 10 0.0")
+
+
 @pytest.mark.parametrize(
     ("geometry", "expected", "missing"),
     [

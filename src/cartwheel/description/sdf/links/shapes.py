@@ -277,7 +277,16 @@ def _heightmap(node: Node, ctx: Context) -> Heightmap:
             values={"kind": "heightmap", "name": uri.text},
             hint="Save the heights as a greyscale PNG with the highest point in white.",
         )
-    if min(size[:2]) <= 0 or size[2] == 0:
+    if size[2] == 0:
+        # Gazebo shows level ground.
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f"the height of the heightmap is 0, so {_FLAT * 1e3:g} mm is used",
+            origin=node.origin,
+            values={"stated": node.text_at("size")},
+        )
+        size = (*size[:2], _FLAT)
+    if min(size[:2]) <= 0:
         raise node.fail(f"each component of a heightmap's <size> must be above 0 (got {size})")
     shape = Heightmap(path=path, size=size, position=position, texture=texture)
     try:
