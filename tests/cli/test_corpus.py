@@ -44,6 +44,16 @@ def test_json_has_the_same(program, tmp_path):
     assert box["speed"] > 0
 
 
+def test_a_model_of_a_world_has_its_own_line(program, tmp_path):
+    text = """<sdf version="1.9"><world name="w"><model name="glider"><link name="l"/>
+      <plugin name="p" filename="gz-sim-velocity-control-system"/></model></world></sdf>"""
+    (tmp_path / "yard.sdf").write_text(text)
+    done = program("corpus", tmp_path, "--for", "1", status=None)
+    assert done.stdout.splitlines()[1].startswith("yard.sdf: glider")
+    found = json.loads(program("corpus", tmp_path, "--for", "1", "--json", status=None).stdout)
+    assert [(each["model"], each["name"]) for each in found["robots"]] == [("glider", "glider")]
+
+
 def test_a_folder_without_robots_is_an_error(program, tmp_path):
     assert f"[{NO_ROBOTS}]" in program("corpus", tmp_path, status=2).stderr
     assert f"[{NO_ROBOTS}]" in program("corpus", tmp_path / "no", status=2).stderr

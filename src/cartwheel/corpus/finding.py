@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel.codes.files import XACRO_NAME_UNKNOWN
+from cartwheel.corpus.worlds import robots_in_worlds
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
 from cartwheel.description.files.regular_files import read_regular_text
@@ -68,12 +69,15 @@ class Survey:
     robots: tuple[Path, ...]
     skipped: tuple[tuple[Path, Kind], ...] = ()
     """Files that are not robots, each with the reason."""
+    in_worlds: tuple[tuple[Path, str], ...] = ()
+    """Worlds, each with the name of a model that plugins move."""
 
 
 def survey(
     folder: Path, *, package_path: Sequence[Path] = (), launches: Iterable[LaunchUse] = ()
 ) -> Survey:
-    """Sorts the descriptions in a folder and its subfolders into robots and other files.
+    """Sorts the descriptions in a folder and its subfolders into robots and other files, and finds
+    the robots that are written in worlds.
 
     Unreadable files count as robots, unless they are parts, so that the test reports the error.
 
@@ -83,8 +87,9 @@ def survey(
         launches: Contents of launch files. The descriptions that they name are neither parts nor
             scenery.
     """
+    in_worlds = tuple(robots_in_worlds(folder, package_path))
     if folder.is_file():
-        return Survey(robots=(folder,))
+        return Survey(robots=() if in_worlds else (folder,), in_worlds=in_worlds)
     files = list(_files(folder))
     texts = {path: text for path in files if (text := _text(path)) is not None}
     launches = list(launches)
@@ -105,6 +110,7 @@ def survey(
     return Survey(
         robots=tuple(path for path, kind in kinds.items() if kind is None),
         skipped=tuple((path, kind) for path, kind in kinds.items() if kind is not None),
+        in_worlds=in_worlds,
     )
 
 

@@ -56,6 +56,12 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     ]
 
 
+def is_mover(filename: str) -> bool:
+    """Whether a plugin moves a robot or its joints, or runs controllers, by its name alone."""
+    name = short_name(filename)
+    return bool(_MANAGER.search(name) or (_MOVES.search(name) and not _RECORDS.search(name)))
+
+
 def managers(robot: RobotDescription, *, jointless: bool = False) -> list[PluginTag]:
     """Controller managers of a robot with movable joints, or of any robot if `jointless`."""
     if not jointless and all(joint.type == "fixed" for joint in robot.joints):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,6 +23,7 @@ from cartwheel.corpus.poses import posed
 from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
 from cartwheel.corpus.thrusters import has_thrusters, thrusts
 from cartwheel.corpus.verdict import Verdict
+from cartwheel.corpus.worlds import load_from_world
 from cartwheel.description import load_robot
 from cartwheel.description.launches import LaunchUse, chosen, launches_near, root_of
 from cartwheel.description.model import Joint, RobotDescription
@@ -32,7 +33,7 @@ from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.ros_control.selection import selection, with_published_control
 from cartwheel.dialects.world_plugins import BUILT_IN
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic, Origin
 from cartwheel.geometry import Pose
 from cartwheel.graph import Subscription
 
@@ -56,6 +57,7 @@ def try_robot(
     controllers: Sequence[Path] | None = None,
     standing: float = STANDING,
     launches: Sequence[LaunchUse] | None = None,
+    model: str = "",
 ) -> Verdict:
     """Tests a description with the arguments and controllers that its launch files name.
 
@@ -69,11 +71,12 @@ def try_robot(
         standing: Simulation time without commands, s.
         launches: Contents of launch files. None: the launch files in the robot's package and in the
             packages beside it are read.
+        model: The name of the model to test, if the file is a world.
 
     Returns:
         The results, including errors in the description.
     """
-    verdict = Verdict(file=file)
+    verdict = Verdict(file=file, model=model)
     if launches is None:
         folder = root_of(file)
         launches = launches_near(folder, package_path) if folder is not None else ()
@@ -81,7 +84,11 @@ def try_robot(
     verdict = replace(verdict, launch=use)
     arguments = {**(use.arguments if use is not None else {}), **(arguments or {})}
     try:
-        robot = load_robot(file, arguments=arguments, package_path=package_path)
+        is_inside = None
+        if model:
+            robot, is_inside = load_from_world(file, model, arguments, package_path)
+        else:
+            robot = load_robot(file, arguments=arguments, package_path=package_path)
         robot = with_published_control(robot, launches, package_path)
     except CartwheelError as error:
         reason = error.diagnostic()
@@ -97,7 +104,7 @@ def try_robot(
     try:
         with World(_WATER if has_thrusters(robot) else "empty", lenient=True) as world:
             pose = _place(robot)
-            model = world.spawn(
+            spawned_model = world.spawn(
                 robot, name=_name_in(world, robot), x=pose.x, y=pose.y, z=pose.z,
                 roll=pose.rpy[0], pitch=pose.rpy[1], yaw=pose.rpy[2], controllers=controllers,
             )  # fmt: skip
@@ -109,7 +116,7 @@ def try_robot(
                 spawned=spawned,
             )
             held: set[str] = set()
-            for found in _moved(verdict, world, model, robot, standing, held=held):
+            for found in _moved(verdict, world, spawned_model, robot, standing, held=held):
                 verdict = replace(found, diagnostics=world.diagnostics)
         if _lies(verdict) or _is_stuck(verdict):
             verdict = _hung(verdict, robot, controllers)
@@ -124,7 +131,7 @@ def try_robot(
             )
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
-    findings = _Findings(file, arguments, package_path, controllers)
+    findings = _Findings(file, arguments, package_path, controllers, is_inside)
     verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
     return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
 
@@ -135,7 +142,7 @@ def _name_in(world: World, robot: RobotDescription) -> str:
 
 
 class _Findings:
-    """The findings of `cartwheel check`, which is run when they are first needed."""
+    """The findings of `cartwheel check` in a robot, which is run when they are first needed."""
 
     def __init__(
         self,
@@ -143,7 +150,9 @@ class _Findings:
         arguments: Mapping[str, str],
         package_path: Sequence[Path],
         controllers: Sequence[Path],
+        is_inside: Callable[[Origin | None], bool] | None,
     ) -> None:
+        self._is_inside = is_inside
         self._check = partial(
             check,
             file,
@@ -156,7 +165,9 @@ class _Findings:
     def __call__(self) -> tuple[Diagnostic, ...]:
         if self._found is None:
             try:
-                self._found = self._check().findings
+                found = self._check().findings
+                inside = self._is_inside
+                self._found = tuple(each for each in found if inside is None or inside(each.origin))
             except CartwheelError:
                 # The description was loaded, so the reason is in a part that `check` reads only.
                 self._found = ()

@@ -188,6 +188,8 @@ class Verdict:
     """The results for one description."""
 
     file: Path
+    model: str = ""
+    """Name of the tested model of a world; empty if the file is not a world."""
     name: str = ""
     error: str = ""
     """Why loading or the simulation failed; empty for success."""

@@ -46,12 +46,16 @@ def corpus(
         CartwheelError: No robot was found.
     """
     surveys = [_survey(folder, package_path) for folder in folders]
-    files = [(file, launches) for found, launches in surveys for file in found.robots]
+    robots = [
+        (file, model, launches)
+        for found, launches in surveys
+        for file, model in (*((file, "") for file in found.robots), *found.in_worlds)
+    ]
     skipped = [each for found, _ in surveys for each in found.skipped]
     verdicts = []
-    for number, (file, launches) in enumerate(files, start=1):
-        note(paint(f"{number} of {len(files)}: {shown_path(file)}", "dim"))
-        verdicts.append(_tried(file, package_path, standing, launches))
+    for number, (file, model, launches) in enumerate(robots, start=1):
+        note(paint(f"{number} of {len(robots)}: {_with_model(shown_path(file), model)}", "dim"))
+        verdicts.append(_tried(file, model, package_path, standing, launches))
     if json:
         result = {
             "schema": SCHEMA,
@@ -70,6 +74,7 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
     stand = verdict.stand
     return {
         "file": str(verdict.file),
+        "model": verdict.model or None,
         "name": verdict.name,
         "verdict": verdict.outcome,
         "faults": [_fault(each) for each in verdict.faults],
@@ -151,26 +156,34 @@ def _survey(
         )
     launches = launches_near(folder, package_path) if folder.is_dir() else None
     found = survey(folder, package_path=package_path, launches=launches or ())
-    if not found.robots:
+    if not (found.robots or found.in_worlds):
         raise CartwheelError(
             f"{folder} contains no robot description",
             code=NO_ROBOTS,
-            hint="Pass a folder that contains .xacro, .urdf or .sdf files.",
+            hint="Pass a folder that contains .xacro, .urdf, .sdf or .world files.",
             values={"folder": str(folder)},
         )
     return found, launches
 
 
 def _tried(
-    file: Path, package_path: Sequence[Path], standing: float, launches: Sequence[LaunchUse] | None
+    file: Path,
+    model: str,
+    package_path: Sequence[Path],
+    standing: float,
+    launches: Sequence[LaunchUse] | None,
 ) -> Verdict:
     try:
-        return try_robot(file, package_path=package_path, standing=standing, launches=launches)
+        return try_robot(
+            file, package_path=package_path, standing=standing, launches=launches, model=model
+        )
     except Exception as error:  # noqa: BLE001 - the other robots are tested anyway
         message = f"internal error: {error!r}"
         reason = INTERNAL_FAULT.diagnostic(message, values={"cause": type(error).__name__})
         return replace(
-            Verdict(file=file), error=message, faults=(Fault(test="load", reason=reason),)
+            Verdict(file=file, model=model),
+            error=message,
+            faults=(Fault(test="load", reason=reason),),
         )
 
 
@@ -179,7 +192,10 @@ def _show(
     folders: Sequence[Path],
     skipped: Sequence[tuple[Path, Kind]],
 ) -> None:
-    rows = [(_name(verdict.file, folders), *_row(verdict)) for verdict in verdicts]
+    rows = [
+        (_with_model(_name(verdict.file, folders), verdict.model), *_row(verdict))
+        for verdict in verdicts
+    ]
     head, *lines = table([_HEAD, *rows]).splitlines()
     say(paint(head, "dim"))
     for line in lines:
@@ -201,7 +217,8 @@ def _show(
 
 
 def _show_faults(verdict: Verdict) -> None:
-    say(f"\n{paint(shown_path(verdict.file), 'bold')}: {_OUTCOMES[verdict.outcome]}")
+    name = _with_model(shown_path(verdict.file), verdict.model)
+    say(f"\n{paint(name, 'bold')}: {_OUTCOMES[verdict.outcome]}")
     for fault in verdict.faults:
         subject = f" {fault.subject}" if fault.subject else ""
         say(f"  {fault.test}{subject}: {fault.reason or 'unknown reason'}")
@@ -222,6 +239,11 @@ def _name(file: Path, folders: Sequence[Path]) -> str:
     if len(folders) == 1 and folders[0] in file.parents:
         return str(file.relative_to(folders[0]))
     return shown_path(file)
+
+
+def _with_model(file: str, model: str) -> str:
+    """A file, or a model in a world."""
+    return f"{file}: {model}" if model else file
 
 
 def _row(verdict: Verdict) -> tuple[str, ...]:

@@ -1,0 +1,98 @@
+"""Robots that are written in worlds, as those of gz-sim's tutorials."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from cartwheel.corpus.movers import is_mover
+from cartwheel.description import load_world
+from cartwheel.description.elements.node import Node
+from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.loading import open_description
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import DescriptionError, Origin, UnknownNameError
+
+SUFFIXES = (".world", ".sdf", ".xacro")
+_MOST = 50
+"""Maximum number of robots in one world."""
+_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
+_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+
+
+def robots_in_worlds(folder: Path, package_path: Sequence[Path] = ()) -> Iterator[tuple[Path, str]]:
+    """World files with the names of their models that plugins move, without included models.
+
+    Args:
+        folder: A folder, which is searched with its subfolders, or a world.
+        package_path: Additional folders to search for packages.
+    """
+    for path in [folder] if folder.is_file() else _files(folder):
+        for name in _robots(path, package_path):
+            yield path, name
+
+
+def load_from_world(
+    file: Path, model: str, arguments: Mapping[str, str], package_path: Sequence[Path]
+) -> tuple[RobotDescription, Callable[[Origin | None], bool]]:
+    """A model of a world, and a function that returns whether an origin is in this model.
+
+    Raises:
+        CartwheelError: The world cannot be loaded, or has no such model.
+    """
+    world = load_world(file, arguments=arguments, package_path=package_path)
+    robot = next((each for each in world.models if each.name == model), None)
+    if robot is None:
+        raise UnknownNameError("model", model, (each.name for each in world.models))
+    start = robot.origin
+    after = [
+        each.origin.line
+        for each in world.models
+        if each.origin.file == start.file and each.origin.line > start.line
+    ]
+    end = min(after, default=None)
+
+    def is_inside(origin: Origin | None) -> bool:
+        if origin is None or origin.file != start.file:
+            return False
+        return start.line <= origin.line and (end is None or origin.line < end)
+
+    found = {id(each): each for each in (*robot.diagnostics, *world.diagnostics)}
+    inside = tuple(each for each in found.values() if is_inside(each.origin))
+    return replace(robot, diagnostics=inside), is_inside
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    for root, folders, names in os.walk(folder):
+        folders[:] = sorted(
+            name for name in folders if not name.startswith(".") and name not in _SKIPPED
+        )
+        yield from (Path(root, name) for name in sorted(names) if name.endswith(SUFFIXES))
+
+
+def _robots(path: Path, package_path: Sequence[Path]) -> list[str]:
+    try:
+        text = _COMMENT.sub("", read_regular_text(path))
+    except OSError:
+        return []
+    if "<world" not in text or "<plugin" not in text or "<model" not in text:
+        return []
+    try:
+        root = open_description(path, {}, package_path).root
+    except DescriptionError:
+        return []
+    worlds = root.all("world") if root.tag in ("sdf", "gazebo") else []
+    found = [name for world in worlds for model in world.all("model") if (name := _robot(model))]
+    return list(dict.fromkeys(found))[:_MOST]
+
+
+def _robot(model: Node) -> str:
+    """The name of a model that a plugin moves; otherwise empty."""
+    static = model.child("static")
+    if static is not None and static.text.strip().lower() in ("1", "true"):
+        return ""
+    moves = any(is_mover(plugin.get("filename") or "") for plugin in model.all("plugin"))
+    return (model.get("name") or "").strip() if moves else ""

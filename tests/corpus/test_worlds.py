@@ -1,0 +1,82 @@
+"""Robots that are written in worlds."""
+
+from tests.devices.drives.carts import cart_sdf
+
+from cartwheel.codes.robot import WHEEL_SEPARATION_MISMATCH
+from cartwheel.corpus import survey, try_robot
+
+TWO = {"left": (0.0, 0.15), "right": (0.0, -0.15)}
+PLUGIN = """<plugin name="drive" filename="{file}"><topic>/{name}/cmd_vel</topic>
+  <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>
+  <wheel_separation>{apart}</wheel_separation><wheel_radius>0.1</wheel_radius></plugin>"""
+CRATE = '<model name="crate"><link name="l"/><plugin name="p" filename="{}"/></model>'
+
+
+def cart(name, *, apart=0.3, file="gz-sim-diff-drive-system", static=False):
+    """A model with its own pose in the world."""
+    text = cart_sdf(
+        TWO,
+        PLUGIN.format(name=name, apart=apart, file=file),
+        balls=((0.15, 0.0), (-0.15, 0.0)),
+    )
+    model = text[text.index("<model") : text.rindex("</model>") + len("</model>")]
+    start = model.index(">") + 1
+    tag = "<static>1</static>" if static else ""
+    return f'<model name="{name}"><pose>3 2 0 0 0 1</pose>{tag}{model[start:]}'
+
+
+def world(folder, *models, name="yard.sdf"):
+    file = folder / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    text = "\n".join(models)
+    file.write_text(f'<sdf version="1.9"><world name="yard">\n{text}\n</world></sdf>')
+    return file
+
+
+def test_models_that_plugins_move_are_found(tmp_path):
+    world(
+        tmp_path,
+        cart("first"),
+        cart("parked", static=True),
+        CRATE.format("gz-sim-pose-publisher-system"),
+        CRATE.format("libgazebo_ros_control.so").replace("crate", "arm"),
+        "<include><uri>model://cart</uri></include>",
+        name="worlds/yard.world",
+    )
+    found = survey(tmp_path)
+    file = tmp_path / "worlds" / "yard.world"
+    assert found.robots == ()
+    assert found.in_worlds == ((file, "first"), (file, "arm"))
+    assert survey(file).in_worlds == found.in_worlds
+
+
+def test_worlds_without_robots_and_unreadable_files_have_none(tmp_path):
+    world(tmp_path, CRATE.format("gz-sim-pose-publisher-system"))
+    (tmp_path / "torn.sdf").write_text('<sdf><world name="w"><model name="m"><plugin')
+    (tmp_path / "cart.sdf").write_text(f'<sdf version="1.9">{cart("alone")}</sdf>')
+    found = survey(tmp_path)
+    assert found.in_worlds == ()
+    assert tmp_path / "cart.sdf" in found.robots
+
+
+def test_each_model_is_tested_alone_and_with_its_own_findings(tmp_path):
+    file = world(tmp_path, cart("good"), cart("wide", apart=0.5), cart("last"))
+    for name in ("good", "wide", "last"):
+        verdict = try_robot(file, model=name, standing=1.0)
+        assert (verdict.file, verdict.model, verdict.name) == (file, name, name)
+        (drive,) = verdict.drives
+        assert drive.topic == f"/{name}/cmd_vel"
+        assert verdict.good == (name != "wide"), verdict.faults
+        codes = [fault.code for fault in verdict.faults]
+        assert codes == [WHEEL_SEPARATION_MISMATCH] * (name == "wide")
+        lines = {fault.reason.origin.line for fault in verdict.faults}
+        text = file.read_text()
+        assert all(text[: text.index('"last"')].count("\n") >= line for line in lines)
+
+
+def test_an_unknown_model_is_a_fault(tmp_path):
+    verdict = try_robot(world(tmp_path, cart("good")), model="god")
+    assert not verdict.loaded
+    (fault,) = verdict.faults
+    assert fault.test == "load"
+    assert fault.reason.values["meant"] == "good"
