@@ -978,6 +978,29 @@ def test_arguments_and_controllers_come_from_the_launch_files_of_the_robot(tmp_p
     assert (verdict.name, verdict.controllers) == ("righty", ("b",))
 
 
+def test_a_gripper_in_an_absent_file_is_the_reason_why_its_controller_does_not_start(tmp_path):
+    spawner = '<node name="s" pkg="controller_manager" type="spawner" args="a hand"/>'
+    group = "\n  type: position_controllers/JointGroupPositionController\n  joints: [{joint}]\n"
+    files = {
+        "package.xml": "<package><name>arm</name></package>",
+        "arm.xacro": '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">'
+        + '<xacro:include filename="$(find far_gripper)/gripper.xacro"/>'
+        + ARM.format(kind="Position")
+        + "</robot>",
+        "config/a.yaml": "a:" + group.format(joint="shoulder") + "hand:" + group.format(joint="f"),
+        "launch/a.launch": '<launch><param name="robot_description" '
+        'command="xacro $(find arm)/arm.xacro"/><rosparam file="$(find arm)/config/a.yaml" '
+        f'command="load"/>{spawner}</launch>',
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    verdict = try_robot(tmp_path / "arm.xacro", standing=1.0)
+    assert verdict.controllers == ("a",)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject, fault.code) == ("controller", "hand", INCLUDE_ABSENT)
+
+
 @pytest.mark.parametrize(
     ("name", "moves"),
     [

@@ -119,7 +119,11 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
         if name in verdict.controllers:
             continue
         if name in refused and not _broadcasts(refused[name]):
-            yield Fault(test="controller", subject=name, reason=refused[name])
+            reason = refused[name]
+            if reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number:
+                # The part that contains the joint may be in a file that is absent.
+                reason = _coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
+            yield Fault(test="controller", subject=name, reason=reason)
         unread = next((each for each in verdict.observed if _contains(each, name)), None)
         if unread is not None:
             yield Fault(test="controller", subject=name, reason=unread)

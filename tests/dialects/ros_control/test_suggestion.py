@@ -69,6 +69,19 @@ def test_controllers_of_the_own_package_are_those_of_the_robot(workspace):
     assert sorted(names(workspace, text)) == ["one.yaml", "own.yaml", "states.yaml"]
 
 
+def test_states_of_a_package_without_controllers_for_the_robot_are_of_another_robot(workspace):
+    """A workspace contains packages of many robots, and such a controller fits each of them."""
+    lone = workspace / "other_robot"
+    (lone / "config").mkdir(parents=True)
+    (lone / "package.xml").write_text("<package><name>other_robot</name></package>")
+    states = "s:\n  type: joint_state_controller/JointStateController\n"
+    (lone / "config" / "states.yaml").write_text(states)
+    text = robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1)
+    assert names(workspace, text) == ["one.yaml"]
+    (workspace / "arm_bringup" / "config" / "one.yaml").unlink()
+    assert names(workspace, text) == []
+
+
 def test_a_joint_after_an_argument_of_the_launch_file_is_one_of_the_robots(workspace):
     with_argument = ROS1_FILE.replace("beam_joint", "$(arg prefix)_joint")
     (workspace / "arm_bringup" / "config" / "one.yaml").write_text(with_argument)

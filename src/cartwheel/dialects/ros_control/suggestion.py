@@ -93,7 +93,8 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
 
     The folders named ``config`` in the robot's package and in the packages beside it are searched.
     If its own package contains controllers for the joints, those of the packages beside it are for
-    other robots with equal joints.
+    other robots with equal joints. Files that only publish the states of all joints must be in a
+    package with controllers for the joints, or in the robot's own.
 
     Args:
         robot: File of the robot.
@@ -105,9 +106,18 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
     others: list[tuple[Path, bool]] = []
     for path, named in _fitting(_candidates(package), joints, ros2=ros2):
         (own if package in path.parents else others).append((path, named))
+    homes = {_home(path, package) for path, named in own + others if named}
     if any(named for _, named in own):
         others = [(path, named) for path, named in others if not named]
-    return [path for path, _ in sorted(own + others)]
+    kept = [path for path, _ in others if _home(path, package) in homes]
+    return sorted([path for path, _ in own] + kept)
+
+
+def _home(path: Path, package: Path | None) -> Path | None:
+    """The package of a file: the robot's own, or one beside it."""
+    if package is None:
+        return None
+    return package.parent / path.relative_to(package.parent).parts[0]
 
 
 def with_controllers(
