@@ -106,6 +106,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "physics.md",
             "gazebo-differences.md",
             "architecture.md",
+            "decisions.md",
             "security.md",
             "performance.md",
             "benchmarks.md",
