@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from tests.coded import raises
 
@@ -33,13 +32,13 @@ def test_values_are_those_of_the_messages(driven: cw.Topic) -> None:
     assert x[-1] == pytest.approx(0.875, abs=0.01)
     assert driven.values("header.stamp") == pytest.approx(driven.times())
     assert driven.values("pose.covariance[35]", size=3).shape == (3,)
-    assert np.isnan(driven.values("pose.covariance[36]")).all()
+    assert driven.values("pose.covariance[::7]").shape == (len(driven.history()), 6)
 
 
 @pytest.mark.parametrize(
     "field",
     ["pose.pose.position.q", "pose", "header.frame_id", "pose.pose.position.x[0]", "", "a..b",
-     "pose.covariance[-1]", "__class__", "pose.__dict__", "header.frame_id[0]"],
+     "pose.covariance[36]", "__class__", "pose.__dict__", "header.frame_id[0]"],
 )  # fmt: skip
 def test_a_field_that_is_no_number_is_refused(driven: cw.Topic, field: str) -> None:
     with raises(FIELD_UNKNOWN, field=field):

@@ -123,7 +123,7 @@ MAY_IMPORT = {
         "gazebo",
         "bridges",
     },
-    "scenarios": {"api", "testing", "description", "messages", "graph"},
+    "scenarios": {"api", "arrays", "testing", "description", "messages", "graph"},
     "batch": {"api", "assembly", "simulation", "messages", "arrays"},
     "gym": {"api", "batch"},
     "sweeps": {"api"},

@@ -318,6 +318,20 @@ arm:
 """
 
 
+def test_parts_of_arrays_are_observations(built):
+    obs = {
+        "diagonal": ("/odom", "pose.covariance[::7]"),
+        "/odom": ["pose.covariance[:2]", "pose.pose.position.x", "pose.covariance[-1]"],
+    }
+    with batch(built, 2, obs=obs) as made:
+        values = made.reset()
+        assert values["diagonal"].shape == (2, 6) and values["/odom"].shape == (2, 4)
+        assert np.array_equal(values["diagonal"][:, -1], values["/odom"][:, -1])
+        assert (values["diagonal"] > 0).all()
+    with raises(FIELD_UNKNOWN, length=36), batch(built, 1, obs={"/odom": "pose.covariance[36]"}):
+        pass
+
+
 def joints(world):
     arm = world.models[-1]
     return [world.model(arm).joint(each) for each in ("beam_joint", "tip_joint")]

@@ -84,8 +84,26 @@ def test_a_field_that_does_not_exist_has_a_suggestion(run):
     text = "expect: [{expression: \"field('/odom', 'pose.poes.position.x') < 2\"}]"
     outcome = run(f"{CART}duration: 0.1\n{text}")
     assert outcome.status == "error"
-    assert 'no field "poes"' in outcome.findings[0].text and '"pose"' in outcome.findings[0].text
-    assert "ExpressionFault" not in outcome.findings[0].text
+    assert 'the field "poes"' in outcome.findings[0].text and '"pose"' in outcome.findings[0].text
+    assert "Error" not in outcome.findings[0].text
+
+
+@pytest.mark.parametrize(
+    ("field", "status", "time"),
+    [
+        ("pose.covariance[0]", "passed", None), ("pose.covariance[-1]", "passed", None),
+        ("pose.covariance[36]", "error", 0.0), ("pose.covariance[x]", "error", 0.0),
+        ("pose.covariance", "error", 0.0), ("pose.covariance[:3]", "error", 0.0),
+        ("header.stamp", "passed", None), ("header", "error", 0.0),
+    ],
+)  # fmt: skip
+def test_a_field_must_be_a_single_value(run, field, status, time):
+    outcome = run(
+        f"{CART}duration: 0.1\nexpect: [{{expression: \"field('/odom', '{field}') >= 0\"}}]"
+    )
+    assert outcome.status == status
+    if time is not None:
+        assert outcome.findings[0].time == time
 
 
 def test_a_case_ends_when_a_condition_has_failed(run):

@@ -164,7 +164,8 @@ class Topic(Generic[M]):
 
         Args:
             field: Names joined with dots, such as ``pose.pose.position.x``, ``ranges[90]`` or
-                ``ranges``.
+                ``ranges``. A part of an array is ``ranges[:90]``, ``ranges[-90:]`` or
+                ``ranges[::10]``, as in Python.
             size: As for `history`.
 
         Returns:
@@ -173,7 +174,7 @@ class Topic(Generic[M]):
 
         Raises:
             GraphError: The type does not have the field, or the field is not a number or an array
-                of numbers.
+                of numbers, or the arrays in all messages end before the index.
         """
         messages = self.history(size)
         if not messages:

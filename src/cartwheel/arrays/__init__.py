@@ -3,7 +3,7 @@
 Arrays are read-only views of the message's data where the layout allows it, and copies otherwise.
 """
 
-from cartwheel.arrays.fields import reader, values
+from cartwheel.arrays.fields import reader, single, values
 from cartwheel.arrays.images import camera_matrix, depth, image
 from cartwheel.arrays.messages import array
 from cartwheel.arrays.points import Scan, cloud, scan
@@ -19,6 +19,7 @@ __all__ = [
     "project",
     "reader",
     "scan",
+    "single",
     "unproject",
     "values",
 ]

@@ -121,7 +121,7 @@ class Lane:
                 if message is None:
                     raise self._no_message(source.topic)
                 read = [each(message) for each in readers]
-                found[name] = _numbers(read[0] if source.single else read)
+                found[name] = _numbers(read[0] if source.single else _row(read))
             else:
                 try:
                     found[name] = _numbers(source(self.world))
@@ -157,6 +157,11 @@ def _picture(message: Any) -> Array:
     return (
         depth(message) if encoding in _DEPTHS or "compressedDepth" in encoding else image(message)
     )
+
+
+def _row(values: list[Any]) -> Any:
+    """The numbers of several fields, some of which may be arrays."""
+    return np.hstack(values) if any(isinstance(each, np.ndarray) for each in values) else values
 
 
 def _numbers(value: Any) -> Array:

@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from cartwheel.arrays import single
 from cartwheel.codes.command import SCENARIO_EXPRESSION, SCENARIO_INVALID
 from cartwheel.errors import CartwheelError
+from cartwheel.messages import zero
 from cartwheel.scenarios.expressions import NAME_HINT, ExpressionFaultError, evaluate, function
-from cartwheel.similar_names import suggestion
 from cartwheel.testing.conditions import (
     Condition,
     JointAt,
@@ -118,7 +119,9 @@ class Expression(Condition):
 
         def field(topic: str, path: str, default: float = math.nan) -> Any:
             message = self._box(str(topic))[1]
-            value = default if message is None else _field(message, str(path))
+            if message is None:
+                single(zero(world.graph.topic(str(topic)).type), str(path))  # finds mistakes
+            value = default if message is None else single(message, str(path))
             return self._noted(f"field('{topic}', '{path}')", value)
 
         values: dict[str, Callable[[Pose], float]] = {
@@ -251,23 +254,6 @@ _MAKERS: dict[str, Callable[[Mapping[str, Any]], Condition]] = {
 
 def _invalid(message: str, missing: str) -> CartwheelError:
     return CartwheelError(message, code=SCENARIO_INVALID, values={"missing": missing})
-
-
-def _field(message: Any, path: str) -> Any:
-    value = message
-    for part in path.split("."):
-        name, _, index = part.partition("[")
-        if name.startswith("_") or not hasattr(value, name):
-            fields = getattr(type(value), "__dataclass_fields__", ())
-            raise ExpressionFaultError(
-                f'the message has no field "{name}"', suggestion(name, list(fields))
-            )
-        value = getattr(value, name)
-        if index:
-            value = value[int(index.rstrip("]"))]
-    if hasattr(value, "item"):
-        return value.item()
-    return value if isinstance(value, bool | int | float | str) else str(type(value).__name__)
 
 
 def _brief(value: Any) -> str:

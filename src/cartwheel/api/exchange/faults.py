@@ -69,7 +69,7 @@ class FaultyWorld(FramedWorld):
                 (CW739).
             frozen: Repeat the first message of the fault, with new stamps.
             noise: Standard deviation of additional Gaussian noise, for fields with a number or an
-                array of numbers.
+                array of numbers, named as for `Topic.values`.
             bias: Numbers that are added to fields.
             change: Receives a copy of each message before all other changes, and returns the
                 message to be delivered, which may be this copy, or None for none. `run` raises its
