@@ -2,6 +2,7 @@
 
 import signal
 import urllib.request
+from xml.etree import ElementTree
 
 import mujoco
 import pytest
@@ -50,8 +51,17 @@ def test_mjcf_of_a_mesh_keeps_it(program):
     assert model.mesh_vertnum.sum() > 10
 
 
+def test_the_format_is_that_of_the_file(program):
+    for name, root in (("out.urdf", "robot"), ("OUT.XML", "mujoco")):
+        program("convert", "rosbots.xacro", "-o", name)
+        assert ElementTree.parse(program.folder / name).getroot().tag == root
+    program("convert", "rosbots.xacro", "-o", "out.xml", "--to", "urdf")
+    assert ElementTree.parse(program.folder / "out.xml").getroot().tag == "robot"
+
+
 def test_what_cannot_be_converted(program):
     assert f"[{USAGE}]" in program("convert", "rosbots.xacro", status=2).stderr
+    assert f"[{USAGE}]" in program("convert", "rosbots.xacro", "-o", "out.txt", status=2).stderr
     assert (
         f"[{OPTION_INVALID}]" in program("convert", "rosbots.xacro", "--to", "usd", status=2).stderr
     )

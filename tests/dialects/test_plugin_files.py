@@ -202,6 +202,27 @@ def test_a_wind_pushes_a_body(tmp_path: Path) -> None:
         assert kite.velocity.linear[0] != pytest.approx(1.0, abs=1e-6)
 
 
+def test_a_link_that_does_not_exist_is_an_error() -> None:
+    kite = """<sdf version="1.9"><model name="kite"><link name="link"><inertial>
+      <mass>10</mass></inertial></link><plugin name="wind" filename="libgusty_wind.so">
+      <link>lnik</link></plugin></model></sdf>"""
+    with cw.World(plugins=[EXAMPLE / "gusty_wind.py"]) as world, raises(running.UNKNOWN_LINK):
+        world.spawn(kite)
+
+
+def test_a_negative_value_is_refused(tmp_path: Path) -> None:
+    plugin = (EXAMPLE / "tilt_alarm.py").read_text()
+    (tmp_path / "alarm.py").write_text(plugin.replace("check_above_zero", "check_not_negative"))
+    alarm = """<sdf version="1.9"><model name="crate"><link name="link"><inertial>
+      <mass>10</mass></inertial></link><plugin name="alarm" filename="libtilt_alarm.so">
+      <limit>{}</limit></plugin></model></sdf>"""
+    with cw.World(plugins=[tmp_path / "alarm.py"]) as world:
+        with raises(devices.PLUGIN_PARAMETER_INVALID, parameter="limit", value=-0.1) as caught:
+            world.spawn(alarm.format(-0.1))
+        assert caught.value.origin is not None and caught.value.origin.line == 3
+        world.spawn(alarm.format(0))
+
+
 ALL = """
 import numpy as np
 import cartwheel as cw

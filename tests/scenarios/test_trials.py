@@ -322,6 +322,7 @@ def test_a_file_that_cannot_be_used_is_an_error_of_the_case(run):
         (f"sees: {CAMERA}, model: nobody", TOPIC_TYPE_MISMATCH),
         (f"sees: {CAMERA}, range: 2", TOPIC_TYPE_MISMATCH),
         (f"sees: {CAMERA}, share: 0.5", OPTION_INVALID),
+        (f"sees: {CAMERA}, angle: 0.5", TOPIC_TYPE_MISMATCH),
     ],
 )
 def test_a_condition_that_cannot_be_tested_is_an_error(run, condition, code):

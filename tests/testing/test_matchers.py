@@ -245,6 +245,33 @@ def test_sees_a_range(make):
     assert raised.value.values["range"] == pytest.approx(2.0, abs=0.01)
 
 
+@pytest.mark.parametrize("turn", [0.0, math.tau, -math.tau])
+def test_sees_a_range_at_an_angle(make, turn):
+    """The ray at 0.2 rad measures 2 m / cos(0.2), although the one at -0.2 rad is shorter."""
+    laser = make.sdf(
+        '<model name="laser"><static>true</static><pose>0 0 0.5 0 0 0</pose><link name="link">'
+        '<sensor name="scan" type="ray"><update_rate>20</update_rate><ray><scan><horizontal>'
+        "<samples>5</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal>"
+        "</scan><range><min>0.1</min><max>2.5</max></range></ray>"
+        '<plugin name="p" filename="libgazebo_ros_laser.so"><topicName>/scan</topicName>'
+        "<frameName>link</frameName></plugin></sensor></link></model>"
+    )
+    wall = make.box("wall", (0.2, 4, 2), static=True, pose=cw.Pose((2.1, 0, 0.5)))
+    post = make.box("post", (0.2, 0.1, 2), static=True, pose=cw.Pose((1.1, -0.2, 0.5)))
+    world = make.world(laser, wall, post)
+    sees(world, "/scan", range=2.0 / math.cos(0.2), within=0.001, angle=0.2 + turn)
+    sees(world, "/scan", range=1.0 / math.cos(0.2), within=0.001, angle=-0.2 + turn)
+    sees(world, "/scan", angle=turn)
+    with pytest.raises(UnmetError) as raised:
+        sees(world, "/scan", range=1.0, angle=turn, timeout=0.2)
+    assert raised.value.values["range"] == pytest.approx(2.0, abs=1e-3)
+    world.model("wall").pose = cw.Pose((9.0, 0.0, 0.5))
+    with pytest.raises(UnmetError):
+        sees(world, "/scan", angle=0.2 + turn, timeout=0.2)
+    with raises(OPTION_INVALID, name="angle"):
+        sees(world, "/scan", angle=0.3 + turn)
+
+
 def test_sees_the_range_of_a_cloud():
     """The nearest point is at a distance of 5 m; those without a measurement are NaN or at 0."""
     points = np.array([[3, 0, 4], [0, 0, 0], [np.nan, 0, 0], [-9, 0, 0]], np.float32)
@@ -265,6 +292,8 @@ def test_sees_the_range_of_a_cloud():
         assert raised.value.values["range"] == 5.0
         with raises(TOPIC_TYPE_MISMATCH, name="color"):
             sees(world, "/points", color=(1.0, 0.0, 0.0))
+        with raises(TOPIC_TYPE_MISMATCH, name="angle"):
+            sees(world, "/points", angle=0.0)
 
 
 RED = """<robot name="red"><link name="red"><inertial><mass value="5"/>

@@ -8,6 +8,8 @@ from typing import Annotated
 
 from cartwheel.cli import arguments, help
 from cartwheel.cli.console import say_version
+from cartwheel.codes.command import USAGE
+from cartwheel.errors import CartwheelError
 
 
 class Format(enum.StrEnum):
@@ -15,6 +17,9 @@ class Format(enum.StrEnum):
 
     URDF = "urdf"
     MJCF = "mjcf"
+
+
+_SUFFIXES = {".urdf": Format.URDF, ".xml": Format.MJCF, ".mjcf": Format.MJCF}
 
 
 def view(
@@ -42,8 +47,11 @@ def view(
 
 
 def convert(
-    to: Annotated[Format, help.option("--to", "Output format.", show_default=False)],
     words: arguments.Names = None,
+    to: Annotated[
+        Format | None,
+        help.option("--to", "Output format. Default: that of the output file, .urdf or .xml."),
+    ] = None,
     output: Annotated[
         Path | None, help.option("-o --output FILE", "Output file. Default: stdout.")
     ] = None,
@@ -53,7 +61,23 @@ def convert(
     from cartwheel.cli.commands import convert as work
 
     file, values = arguments.split(words)
+    if to is None:
+        to = _format_of(output)
     work.convert(arguments.needed(file), values, package_path or [], to=to.value, output=output)
+
+
+def _format_of(output: Path | None) -> Format:
+    """The format of an output file.
+
+    Raises:
+        CartwheelError: There is no file, or its name does not state a format.
+    """
+    found = None if output is None else _SUFFIXES.get(output.suffix.lower())
+    if found is None:
+        raise CartwheelError(
+            "the output format is missing", code=USAGE, hint="Add --to urdf or --to mjcf."
+        )
+    return found
 
 
 def version() -> None:

@@ -367,10 +367,12 @@ class Component:
         return self.scope.place_of(parameter)
 
     def link_or_root(self, name: str) -> LinkHandle:
-        """Returns the link with this name, or the root link if no link has this name."""
-        description = self.part.description
-        known = description.link(name) is not None
-        return self.part.link(name if known else description.canonical_link)
+        """Returns the link with this name, or the root link if the name is empty.
+
+        Raises:
+            CartwheelError: No link has this name.
+        """
+        return self.part.link(name or self.part.description.canonical_link)
 
     def checked(self, callback: Callable[[Any], None], *, unset: bool) -> Callable[[Any], None]:
         """Wraps a callback so that it only receives commands that can be simulated.

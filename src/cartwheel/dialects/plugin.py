@@ -245,14 +245,20 @@ class Plugin(Component, Generic[C]):
                 least = "positive" if value <= 0 else f"at least {SMALLEST:g}"
                 raise invalid(name, value, least, self.place_of(name))
 
-    def check_not_negative(self, *names: str) -> None:
-        """Checks that parameters, given by their fields, are not negative.
+    def check_not_negative(self, *names: str, **values: float) -> None:
+        """Checks that parameters are not negative.
 
-        Fields that the plugin does not have are skipped. Each component of a vector is checked.
+        Args:
+            names: Fields. Those that the plugin does not have are skipped. Each component of a
+                vector is checked.
+            values: Values by their tags, as for `check_above_zero`.
 
         Raises:
             PluginError: A value is negative.
         """
+        for name, each in values.items():
+            if each < 0:
+                raise invalid(name, each, "at least 0", self.place_of(name))
         fields = {each.name: each for each in dataclasses.fields(self.parameters)}
         for name in names:
             value = getattr(self.config, name, 0.0)

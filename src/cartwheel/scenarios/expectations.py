@@ -246,7 +246,7 @@ _MAKERS: dict[str, Callable[[Mapping[str, Any]], Condition]] = {
     "no_contact": lambda value: Touches(*_pair(value["no_contact"]), inverted=True),
     "joint": _joint,
     "sees": lambda value: Sees(
-        value["sees"], **_some(value, "range", "within", "color", "share", "model")
+        value["sees"], **_some(value, "range", "within", "angle", "color", "share", "model")
     ),
     "expression": lambda value: Expression(value["expression"]),
 }  # fmt: skip

@@ -182,6 +182,7 @@ def sees(
     *,
     range: float | None = None,
     within: float | None = None,
+    angle: float | None = None,
     color: Sequence[float] | None = None,
     share: float | None = None,
     model: str | None = None,
@@ -193,8 +194,9 @@ def sees(
         world: The world, or one of its models.
         topic: A topic with images, depth images, laser scans, ranges, point clouds or images of
             logical cameras, for a model in its namespace.
-        range: Shortest distance that the sensor measures, m.
+        range: Shortest distance that the sensor measures, m, also to the ground.
         within: Tolerance of the range, m; None is 0.05.
+        angle: Angle of the only ray of a laser scan that counts, rad; None is all rays.
         color: Red, green and blue from 0 to 1, for images.
         share: Minimum share of the image's pixels that have the colour; None is 0.01.
         model: Name of the detected model, for logical cameras.
@@ -208,12 +210,14 @@ def sees(
         UnknownNameError: The topic does not exist.
         GraphError: Messages of the topic's type contain no view, or cannot be tested for what is
             given: a laser scan has no colour.
-        CartwheelError: The colour is invalid, or `within` or `share` is given without the range or
-            colour to which it belongs.
+        CartwheelError: The colour is invalid, no ray has the angle, or `within` or `share` is given
+            without the range or colour to which it belongs.
     """
     __tracebackhide__ = True
     name = topic_of(world, topic)
-    condition = Sees(name, range=range, within=within, color=color, share=share, model=model)
+    condition = Sees(
+        name, range=range, within=within, angle=angle, color=color, share=share, model=model
+    )
     return _until(world_of(world, "world"), condition, timeout)
 
 

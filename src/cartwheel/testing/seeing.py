@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cartwheel.api.arguments import refused
-from cartwheel.api.values import array, invalid
-from cartwheel.arrays import cloud
+from cartwheel.api.values import array, invalid, scalar
+from cartwheel.arrays import cloud, scan
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.errors import GraphError
 from cartwheel.testing.conditions import Condition
@@ -28,7 +28,7 @@ _DEPTHS = {"32FC1": (np.float32, 1.0), "16UC1": (np.uint16, 1e-3)}
 """Type and unit in m of the values of depth images."""
 _KINDS: dict[str, tuple[str, ...]] = {
     "sensor_msgs/msg/Image": ("color", "range"),
-    "sensor_msgs/msg/LaserScan": ("range",),
+    "sensor_msgs/msg/LaserScan": ("range", "angle"),
     "sensor_msgs/msg/Range": ("range",),
     "sensor_msgs/msg/PointCloud2": ("range",),
     "sensor_msgs/msg/PointCloud": ("range",),
@@ -36,6 +36,8 @@ _KINDS: dict[str, tuple[str, ...]] = {
 }
 """What the messages of each type can be tested for. The encoding of an image decides further."""
 _WITHIN, _SHARE = 0.05, 0.01
+_ROUNDED = 1e-3
+"""Rounding of the angles of a scan, which are float32, rad."""
 _NEEDS = {"within": "range", "share": "color"}
 """Arguments that only have a meaning with another one."""
 
@@ -48,6 +50,7 @@ class Sees(Condition):
             logical cameras.
         range: Shortest measured distance, m; None if any distance is sufficient.
         within: Tolerance of the range, m; None is 0.05.
+        angle: Angle of the only ray of a laser scan that counts, rad.
         color: Red, green and blue from 0 to 1, for images.
         share: Minimum share of the image's pixels that have the colour; None is 0.01.
         model: Name of the detected model, for logical cameras.
@@ -63,18 +66,21 @@ class Sees(Condition):
         *,
         range: float | None = None,
         within: float | None = None,
+        angle: float | None = None,
         color: Sequence[float] | None = None,
         share: float | None = None,
         model: str | None = None,
     ) -> None:
         super().__init__()
-        given = {"range": range, "within": within, "color": color, "share": share, "model": model}
+        given = {"range": range, "within": within, "angle": angle, "color": color, "share": share,
+                 "model": model}  # fmt: skip
         self._asked = tuple(name for name, each in given.items() if each is not None)
         for name in self._asked:
             if _NEEDS.get(name, name) not in self._asked:
                 raise refused(name, f"used with {_NEEDS[name]}", given[name])
         self.topic, self.range, self.model = topic, range, model
         self.within = _WITHIN if within is None else within
+        self.angle = None if angle is None else scalar(angle, "angle")
         self.color = None if color is None else _checked(color)
         self.share = _SHARE if share is None else share
         self.nearest: float | None = None
@@ -151,7 +157,7 @@ class Sees(Condition):
             self._require(testable, found, encoding=message.encoding)
             if coloured:
                 return self._evaluate_color(message)
-        distance = _nearest(message, kind)
+        distance = _nearest(message, kind) if self.angle is None else self._ray(message)
         if distance is None:
             return False
         if self.range is None:
@@ -160,6 +166,16 @@ class Sees(Condition):
         if abs(distance - self.range) < self._best:
             self._best, self.nearest = abs(distance - self.range), distance
         return abs(distance - self.range) <= self.within
+
+    def _ray(self, message: Any) -> float | None:
+        """The distance that the ray at the angle measures, m; None if nothing is in range."""
+        view = scan(message)
+        turns = np.abs((view.angles - self.angle + math.pi) % math.tau - math.pi)
+        ray = int(turns.argmin()) if turns.size else 0
+        if not turns.size or turns[ray] > abs(message.angle_increment) / 2 + _ROUNDED:
+            limits = f"{message.angle_min:.3f} to {message.angle_max:.3f} rad"
+            raise refused("angle", f"that of a ray, from {limits}", self.angle)
+        return float(view.ranges[ray]) if view.valid[ray] else None
 
     def _evaluate_color(self, message: Any) -> bool:
         size = len(message.encoding.rstrip("0123456789"))
@@ -176,6 +192,7 @@ class Sees(Condition):
 
     @property
     def expected(self) -> str:
+        place = "" if self.angle is None else f" at {self.angle:g} rad"
         if self.color is not None:
             color = ", ".join(f"{each:g}" for each in self.color)
             return (
@@ -184,8 +201,12 @@ class Sees(Condition):
         if self.model is not None:
             return f"{self.topic} shows {self.model}"
         if self.range is not None:
-            return f"{self.topic} measures {self.range:g} m within {self.within:g} m"
-        return f"{self.topic} shows an object"
+            what = "the shortest distance" if self.angle is None else "the distance"
+            return (
+                f"{what} that {self.topic} measures{place} is {self.range:g} m within "
+                f"{self.within:g} m"
+            )
+        return f"{self.topic} shows an object{place}"
 
     @property
     def actual(self) -> str:
@@ -202,7 +223,9 @@ class Sees(Condition):
         if self.model is not None:
             return f"it showed {', '.join(self.seen_models) or 'no model'}"
         if self.nearest is not None:
-            return f"the most similar distance was {self.nearest:.3f} m"
+            if self.range is None:
+                return f"the distance was {self.nearest:.3f} m"
+            return f"the most similar one was {self.nearest:.3f} m"
         return f"{self.count} messages contained no object"
 
     @property

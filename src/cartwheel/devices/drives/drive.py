@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.component import Component
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_motion
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of, planar_motion
 from cartwheel.devices.drives.reckoning import Motion
 from cartwheel.devices.joints.states import JointStates, JointStatesConfig
 
@@ -65,7 +65,7 @@ class Drive(Component):
         self._odometry = self.add(Odometry(self.scope, config.odometry))
         if config.joint_states is not None:
             self._joint_states = self.add(JointStates(self.scope, config.joint_states))
-        self._base = self.link_or_root(config.odometry.base)
+        self._base = base_of(self, config.odometry)
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout is not None:
             self._timeout = config.timeout

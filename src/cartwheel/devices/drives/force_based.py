@@ -8,7 +8,13 @@ import numpy as np
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.drives.body_velocity import BodyVelocity, BodyVelocityConfig
-from cartwheel.devices.drives.odometry import UNKNOWN, Odometry, OdometryConfig, planar_motion
+from cartwheel.devices.drives.odometry import (
+    UNKNOWN,
+    Odometry,
+    OdometryConfig,
+    base_of,
+    planar_motion,
+)
 from cartwheel.geometry import Array, Pose
 
 _TURNING = 1e-4
@@ -52,7 +58,7 @@ class ForceBasedDrive(Component):
         )
         if config.odometry is None:
             return
-        self._base = self.link_or_root(config.odometry.base)
+        self._base = base_of(self, config.odometry)
         self._odometry = self.add(Odometry(scope, config.odometry))
         # The initial pose must not depend on when the first subscriber appears.
         self.part.schedule(

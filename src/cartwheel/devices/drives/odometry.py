@@ -52,6 +52,13 @@ class OdometryConfig:
     """Shape (36,)."""
 
 
+def base_of(component: Component, config: OdometryConfig) -> LinkHandle:
+    """The link that is the base, or the root link: a base frame need not be a link."""
+    description = component.part.description
+    known = description.link(config.base) is not None
+    return component.part.link(config.base if known else description.canonical_link)
+
+
 class Odometry(Component):
     """Publishes ``nav_msgs/Odometry`` and the transform from the odometry frame to the robot."""
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.drives.body_velocity import BodyVelocity, BodyVelocityConfig
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_motion
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of, planar_motion
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,7 +44,7 @@ class PlanarDrive(Component):
         )
         self.add(BodyVelocity(scope, body))
         if config.odometry is not None:
-            self._base = self.link_or_root(config.odometry.base)
+            self._base = base_of(self, config.odometry)
             self._odometry = self.add(Odometry(scope, config.odometry))
             rate = config.odometry.rate
             self.part.schedule(rate, after=self._publish, topics=self._odometry.publishers)
