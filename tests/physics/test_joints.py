@@ -1,5 +1,6 @@
 """Joints beyond hinge and slide: their law, from equations of motion."""
 
+import itertools
 import math
 
 import numpy as np
@@ -227,3 +228,29 @@ def test_a_joint_that_friction_holds_does_not_creep(make):
         angles[friction] = float(data_of(world).joint("m::j").qpos[0])
     assert abs(angles[1.5]) < 1e-4
     assert angles[0.9] > 0.5
+
+
+@pytest.mark.parametrize("frequency", [0.5, 2.0])
+@pytest.mark.parametrize("step", [0.001, 0.005])
+def test_a_spring_loses_what_the_step_takes(make, frequency, step):
+    """The step solves (1 + (ω h)²) v' = v − h ω² q, which has the factor 1 / sqrt(1 + (ω h)²)."""
+    omega, inertia = 2 * math.pi * frequency, 0.1
+    spring = f"<axis><xyz>0 0 1</xyz><dynamics><spring_stiffness>{inertia * omega**2}"
+    spring += "</spring_stiffness></dynamics></axis>"
+    hinge = joint("hinge", "revolute", "world", "arm", spring)
+    text = f'<sdf version="1.9"><model name="m">{link("arm", inertia=inertia)}{hinge}</model></sdf>'
+    with cw.World("empty", step_size=step) as world:
+        arm = world.spawn(text, z=2.0)
+        arm.joints["hinge"].position = 0.5
+        positions = []
+        for _ in range(4):
+            period = []
+            for _ in range(round(1 / (frequency * step))):
+                world.step()
+                period.append(arm.joint("hinge"))
+            positions.append(max(period[len(period) // 2 :]))
+        lost = (1 + (omega * step) ** 2) ** (-math.pi / (omega * step))
+        assert lost == pytest.approx(math.exp(-math.pi * omega * step), rel=0.01)
+        for before, after in itertools.pairwise(positions):
+            # The extremes are missed by half a step at most.
+            assert after / before == pytest.approx(lost, rel=(omega * step) ** 2 + 1e-3)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from cartwheel import Twist
+from cartwheel import Twist, World
 from cartwheel.description import load_text
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.world.build import DEFAULT_STEP
@@ -251,3 +251,45 @@ def test_rolling_without_slipping(make, shape, factor):
     assert gained == pytest.approx(G * math.sin(slope) / (1 + factor), rel=5e-3)
     spin = world.session.simulation.data.joint("roller::link").qvel[3:]
     assert np.linalg.norm(spin) * radius == pytest.approx(start + gained, rel=5e-3)
+
+
+STEPS = [0.0002, 0.001, 0.005]
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_body_that_begins_to_fall_slowly_does_not_sleep(step):
+    with World("empty", step_size=step) as world:
+        box = world.spawn("box_small.urdf", z=5.0)
+        world.gravity = (0.0, 0.0, -0.01)
+        world.run(2.0)
+        # The fall is g t² / 2 + g h t / 2.
+        assert 5.0 - box.pose.z == pytest.approx(0.02 + 0.01 * step, rel=1e-3)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_body_that_begins_to_slide_slowly_does_not_sleep(step):
+    """It has slept before gravity turns by 0.1 degrees, and its base has no friction."""
+    slope = math.radians(0.1)
+    with World("empty", step_size=step) as world:
+        box = world.spawn("box_small.urdf", z=0.15)
+        box.link(box.links[0]).friction = 0.0
+        world.run(1.0)
+        start = box.pose.x
+        world.gravity = (G * math.sin(slope), 0.0, -G * math.cos(slope))
+        world.run(2.0)
+        assert box.pose.x - start == pytest.approx(2 * G * math.sin(slope), rel=0.02)
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("amplitude", [0.005, 0.05])
+def test_a_pendulum_does_not_sleep_at_its_turning_points(step, amplitude):
+    text = f'<sdf version="1.9">{pendulum(1.0)}</sdf>'
+    with World("empty", step_size=step) as world:
+        swinging = world.spawn(text)
+        swinging.joints["pivot"].position = amplitude
+        times, angles = record(world, "pendulum::pivot", 6.0)
+        late = angles[times > 3.0]
+        # The extremes are missed by half a step at most.
+        missed = 2 * (math.sqrt(G) * step) ** 2 + 1e-3
+        assert late.max() == pytest.approx(amplitude, rel=missed)
+        assert late.min() == pytest.approx(-amplitude, rel=missed)

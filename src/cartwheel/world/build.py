@@ -37,7 +37,7 @@ MOST_CONTACTS = 10_000
 _CROWD = 60
 """Minimum number of shapes for the contact limit to be exceeded."""
 _SHORTEST = 0.01
-"""Length used to judge the speed of a rotating body without a shape, m."""
+"""Minimum length by which the speed of a rotating body is judged, m."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -256,9 +256,11 @@ def extend_at_rest(model: mujoco.MjModel) -> None:
     """Sets a minimum length, by which the engine judges the speed of a rotating body.
 
     A body without extent has only its velocity as a measure of rest. It must not sleep while it
-    spins.
+    spins. Its radius of gyration is its extent if it has no shape.
     """
-    model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
+    masses = np.maximum(model.body_subtreemass[model.dof_bodyid], mujoco.mjMINVAL)
+    radii = np.sqrt(model.dof_M0 / masses)
+    model.dof_length[:] = np.maximum.reduce([model.dof_length, radii, np.full(model.nv, _SHORTEST)])
 
 
 def exclude_rotors(model: mujoco.MjModel) -> None:

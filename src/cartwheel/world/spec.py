@@ -19,6 +19,11 @@ from cartwheel.world.lights import add_light
 DEFAULT_STEP = 0.005
 """s; see ``docs/physics.md`` for the reasons."""
 
+_SLOWEST = 0.05
+"""Speed below which a body is at rest, per time step, m/s². A body sleeps after ten steps below it,
+so one that accelerates from rest by more than a tenth of this value does not sleep. It is above the
+0.04 mm/s at which the bricks of the world ``rubble`` creep, down to a time step of 1 ms.
+"""
 _MOST_AMBIENT = 0.4
 """SDF's default. Worlds for new Gazebo state 1, which Gazebo's renderer dims; here it would leave
 no shading.
@@ -53,6 +58,7 @@ def empty_spec(world: WorldDescription, step: float) -> mujoco.MjSpec:
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = contact.FRICTION_IMPEDANCE_RATIO
     spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+    spec.option.sleep_tolerance = _SLOWEST * step
     # Keeps lengths that MuJoCo scales by the model's extent in metres.
     spec.stat.extent = 1.0
     # The laser_retro of a geom.
