@@ -17,6 +17,7 @@ from cartwheel.errors import SimulationError
 from cartwheel.simulation.outside_steps import physics_of_cartwheel
 
 G = 9.8
+TURN = cw.Twist((0.3, 0.0, 0.0), (0.2, 0.5, 1.0))
 STEPS = [0.005, 0.001]
 SPACE = '<sdf version="1.9"><world name="space"><gravity>0 0 0</gravity></world></sdf>'
 LASER = """<sensor name="laser" type="lidar"><topic>scan</topic><update_rate>10</update_rate>
@@ -277,3 +278,26 @@ def test_another_engine_cannot_compute_it() -> None:
         for speed, expected in ((0.0, 0), (0.1, 1), (0.0, 0)):
             platform.velocity = cw.Twist((speed, 0.0, 0.0))
             assert len(list(physics_of_cartwheel(engine))) == expected
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("holds", [True, False])
+@pytest.mark.parametrize("velocity", [cw.Twist((0.5, 0.1, 0.2)), TURN])
+def test_what_is_attached_moves_with_the_model(step, holds, velocity):
+    """The weld follows within a tenth of a millimetre, and turns as far as the model."""
+    with cw.World("empty", step_size=step) as world:
+        hook = world.spawn(fixed((0.1, 0.1, 0.1)), z=4.0)
+        load = world.spawn(loose(2.0), x=0.3, z=3.5, yaw=0.4)
+        one, two = hook.link("link"), load.link("link")
+        (one.attach(two) if holds else two.attach(one))
+        world.run(0.5)
+        before = hook.pose.inverse() @ load.pose
+        hook.velocity = velocity
+        world.run(1.0)
+        after = hook.pose.inverse() @ load.pose
+        assert after.position == pytest.approx(before.position, abs=1e-4)
+        assert after.rpy == pytest.approx(before.rpy, abs=1e-4)
+        hook.velocity = cw.Twist()
+        world.run(0.5)
+        after = hook.pose.inverse() @ load.pose
+        assert after.position == pytest.approx(before.position, abs=1e-5)

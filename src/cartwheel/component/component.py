@@ -367,11 +367,7 @@ class Component:
         return self.scope.place_of(parameter)
 
     def link_or_root(self, name: str) -> LinkHandle:
-        """Returns the link with this name, or the root link if the name is empty.
-
-        Raises:
-            CartwheelError: No link has this name.
-        """
+        """Returns the link with this name, which must exist; the root link if it is empty."""
         return self.part.link(name or self.part.description.canonical_link)
 
     def checked(self, callback: Callable[[Any], None], *, unset: bool) -> Callable[[Any], None]:

@@ -3,7 +3,8 @@
 For MuJoCo, such a model is at rest in each step, so its contacts damp the velocity of the other
 body relative to the world: the model would push with a force that depends on the step, and friction
 would hold what lies on it. Here the velocity of its surface is added to that of each contact, so
-that a contact has the same forces as if the other body moved instead.
+that a contact has the same forces as if the other body moved instead. The same applies to the welds
+of attached links, which would otherwise follow late.
 """
 
 from __future__ import annotations
@@ -26,6 +27,11 @@ _IMPACT = 0.02
 _TORSION = 4
 """Dimensions of a contact with torsional friction; see MuJoCo's ``condim``."""
 _ROLLING = 6
+_EQUALITY = mujoco.mjtConstraint.mjCNSTR_EQUALITY.value
+_WELD = mujoco.mjtEq.mjEQ_WELD.value
+_WELD_ROWS = 6
+"""Constraints of a weld: three of the position, and three of the orientation."""
+_BODY = mujoco.mjtObj.mjOBJ_BODY.value
 Ints = NDArray[np.int64]
 
 
@@ -45,6 +51,7 @@ class Moved:
         for number, bodies in enumerate(roots):
             owners[np.isin(model.body_rootid, list(bodies))] = number
         self._owners = owners[model.geom_bodyid]
+        self._owners_of_bodies = owners
         self._bodies = np.flatnonzero(owners >= 0)
         self._of_bodies = owners[self._bodies]
         self._centres = model.body_rootid[self._bodies]
@@ -89,13 +96,49 @@ class Moved:
             data: The MuJoCo data after a forward pass.
         """
         self.set_velocities(data)
+        pulled = self._pull(model, data)
+        if self._push(model, data) or pulled:
+            mujoco.mj_fwdConstraint(model, data)
+
+    def _pull(self, model: Any, data: Any) -> bool:
+        """Adds the velocities to the welds of attached links; returns whether there are any."""
+        bodies = np.stack([model.eq_obj1id, model.eq_obj2id])
+        welds = (model.eq_type == _WELD) & (model.eq_objtype == _BODY) & (data.eq_active != 0)
+        owners = np.where(welds, self._owners_of_bodies[np.where(welds, bodies, 0)], -1)
+        found = np.flatnonzero((owners >= 0).any(axis=0))
+        for weld in found.tolist():
+            rows = np.flatnonzero((data.efc_type == _EQUALITY) & (data.efc_id == weld))
+            if len(rows) != _WELD_ROWS:
+                continue
+            one, two = bodies[:, weld].tolist()
+            values, bent = np.zeros(6), np.zeros(3)
+            for body, owner, sign, arm in (
+                (one, owners[0, weld], 1.0, model.eq_data[weld, 3:6]),
+                (two, owners[1, weld], -1.0, model.eq_data[weld, :3]),
+            ):
+                if owner < 0:
+                    continue
+                place = data.xpos[body] + data.xmat[body].reshape(3, 3) @ arm
+                spin = self._angular[owner]
+                around = np.cross(spin, place - self.origins[owner])
+                values[:3] += sign * (self._linear[owner] + around)
+                values[3:] += sign * spin
+                bent += sign * np.cross(spin, around)
+            values[3:] = _turn(model, data, weld, values[3:])
+            data.efc_vel[rows] += values
+            data.efc_aref[rows] -= _damping(model, data, rows) * values
+            data.efc_aref[rows[:3]] -= bent
+        return bool(len(found))
+
+    def _push(self, model: Any, data: Any) -> bool:
+        """Adds the velocities to the contacts; returns whether there are any."""
         if not data.ncon:
-            return
+            return False
         contacts = data.contact
         owners = self._owners[contacts.geom]
         rows = np.flatnonzero((owners >= 0).any(axis=1) & (contacts.efc_address >= 0))
         if not len(rows):
-            return
+            return False
         owners, first = owners[rows], contacts.efc_address[rows]
         points, sizes = contacts.pos[rows], contacts.dim[rows]
         frames = contacts.frame[rows].reshape(-1, 3, 3)
@@ -126,13 +169,28 @@ class Moved:
         if self._turns:
             tangents = np.einsum("ijk,ik->ij", frames, bent)[:, 1:]
             self._carried.bend(model, data, first[sizes >= 3], tangents[sizes >= 3])
-        mujoco.mj_fwdConstraint(model, data)
+        return True
+
+
+def _turn(model: Any, data: Any, weld: int, spin: Array) -> Array:
+    """An angular velocity along the rows of a weld, as MuJoCo defines them for a rotation.
+
+    They are half the vector part of q₂* ω q₁ p, times the scale of torques, where q₁ and q₂ are the
+    orientations of the bodies, and p is their relative orientation.
+    """
+    target, inverse, product = np.zeros(4), np.zeros(4), np.zeros(4)
+    mujoco.mju_mulQuat(target, data.xquat[model.eq_obj1id[weld]], model.eq_data[weld, 6:10])
+    mujoco.mju_negQuat(inverse, data.xquat[model.eq_obj2id[weld]])
+    mujoco.mju_mulQuat(product, np.array([0.0, *spin]), target)
+    mujoco.mju_mulQuat(target, inverse, product)
+    rows: Array = 0.5 * model.eq_data[weld, 10] * target[1:]
+    return rows
 
 
 def _damping(model: Any, data: Any, rows: Ints) -> Array:
-    """Acceleration that a velocity along rows of contacts causes, 1/s.
+    """Acceleration that a velocity along rows of constraints causes, 1/s.
 
-    MuJoCo's discrete integrator applies the spring and the damper of a contact at the end of the
+    MuJoCo's discrete integrator applies the spring and the damper of a constraint at the end of the
     step, which reduces both.
     """
     stiffness, damping, impedance = data.efc_KBIP[rows, :3].T
