@@ -154,11 +154,25 @@ def test_a_description_that_is_only_shown_is_started(bot: Path) -> None:
     assert model.description.name == "bot.xacro" and model.spawn.place == {}
 
 
-def test_an_absent_file_is_at_the_same_place_in_the_package(bot: Path) -> None:
-    """Launch files name places on the computers of their authors."""
-    text = 'xacro.process_file(os.path.expanduser("~/ws/src/bot/urdf/other.urdf"))\n'
-    (model,) = read_launch(written(bot, "a.launch.py", text), {}).models
+@pytest.mark.parametrize(
+    "place",
+    [
+        'os.path.expanduser("~/ws/src/bot/urdf/other.urdf")',
+        'get_package_share_directory("bot") + "/other.urdf"',
+        '"/opt/other.urdf"',
+    ],
+)
+def test_a_description_at_another_place_is_found_in_the_package(bot: Path, place: str) -> None:
+    """Launch files name places on the computers of their authors, or those to which setup.py
+    installs a file."""
+    path = written(bot, "a.launch.py", f"xacro.process_file({place})\n")
+    (model,) = read_launch(path, {}).models
     assert model.description == bot / "urdf/other.urdf"
+    (bot / "other").mkdir()
+    (bot / "other" / "other.urdf").write_text("<robot/>")
+    if "expanduser" not in place:
+        with raises(NOT_A_DESCRIPTION):  # which one is unknown
+            read_launch(path, {})
 
 
 @pytest.mark.parametrize(

@@ -87,7 +87,8 @@ def read_launch(
         raise _failure(file, "reading the launch file takes too long") from None
     models = tuple(_models(facts, uses))
     if not models:
-        raise _failure(file, "the launch file names no description that exists")
+        named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
+        raise _failure(file, "the launch file names no description that exists", named)
     world = facts.world
     if not world and file.suffix == ".py":
         # Included launch files inherit the arguments, such as `world` of gazebo.launch.py.
@@ -165,7 +166,7 @@ def _unused(file: Path, arguments: Mapping[str, str], facts: Facts) -> list[Diag
     ]
 
 
-def _failure(file: Path, reason: str) -> DescriptionError:
+def _failure(file: Path, reason: str, named: str = "") -> DescriptionError:
     try:
         line = 1 if file.suffix == ".py" else xml.read_file(file).origin.line
     except DescriptionError as error:
@@ -180,5 +181,5 @@ def _failure(file: Path, reason: str) -> DescriptionError:
         reason,
         code=codes.NOT_A_DESCRIPTION,
         origin=Origin(file=str(file), line=line),
-        hint="Launch files are read, but not executed. Pass the description that it loads.",
+        hint=f"Launch files are read, but not executed. {named}Pass the description that it loads.",
     )

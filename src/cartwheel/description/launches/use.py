@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 from collections.abc import Callable, Mapping
@@ -9,7 +10,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cartwheel import yaml_text
-from cartwheel.description.files.package_folders import is_file, package_name
+from cartwheel.description.files.package_folders import (
+    is_file,
+    package_above,
+    package_name,
+)
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
@@ -169,14 +174,31 @@ class Facts:
             self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
 
     def _here(self, file: Path) -> Path:
-        """An absent file at its place in the package, such as ~/ws/src/bot/bot.urdf."""
-        if self.home is None or is_file(file):
+        """A file where it is in the sources, although the launch file names another place.
+
+        An absolute path may be that on another computer, such as ~/ws/src/bot/bot.urdf, and
+        setup.py may install a file elsewhere than it is in the sources of the package.
+        """
+        if is_file(file):
             return file
-        for name in (self.home.name, package_name(self.home)):
+        package = package_above(file.parent) or self.home
+        if package is None:
+            return file
+        for name in (package.name, package_name(package)):
             if name in file.parts:
                 last = len(file.parts) - file.parts[::-1].index(name)
-                return self.home.joinpath(*file.parts[last:])
-        return file
+                if is_file(found := package.joinpath(*file.parts[last:])):
+                    return found
+        return self._only(package, file.name) or file
+
+    def _only(self, package: Path, name: str) -> Path | None:
+        """The only file of a name in a package; None if there is none or several."""
+        found: list[Path] = []
+        for root, folders, names in os.walk(package):
+            self.effort.spend(_LOOK + len(names))
+            folders[:] = sorted(each for each in folders if not each.startswith("."))
+            found += [Path(root, name)] if name in names else []
+        return found[0] if len(found) == 1 else None
 
     def node(self, package: str, executable: str, words: list[str]) -> None:
         """Adds what a node with these arguments starts: models or controllers."""
