@@ -10,6 +10,7 @@ import pytest
 from tests.checks.seeded import LUMP, WITH_ADVICE, WITHOUT_PLACE
 
 from cartwheel.checks import nodes, rules
+from cartwheel.checks.checking import check
 from cartwheel.checks.rules import RULES
 from cartwheel.checks.spelling import meant
 
@@ -288,6 +289,15 @@ def test_what_nothing_collides_with_is_reported(bench, spoil, take):
     found = bench.find(text, "base-without-collision")
     assert '<box size="0.4 0.3 0.1"/>' in found[0].instead
     assert not bench.find(take(text, found[0]), "base-without-collision")
+
+
+@pytest.mark.parametrize(("more", "reported"), [("", True), ("<static>1</static>", False)])
+def test_a_model_of_a_sensor_alone_falls(tmp_path, more, reported):
+    path = tmp_path / "eye.sdf"
+    sensor = '<link name="l"><sensor name="s" type="imu"/></link>'
+    path.write_text(f'<sdf version="1.9"><model name="eye">{more}{sensor}</model></sdf>')
+    codes = [each.code.name for each in check(path).findings]
+    assert ("base-without-collision" in codes) == reported
 
 
 def test_what_is_written_already_is_not_what_was_meant(bench, spoil):

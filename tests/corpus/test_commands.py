@@ -172,3 +172,24 @@ def test_wheels_that_are_mounted_in_opposite_directions_roll_forward_together(tm
     verdict = tried(tmp_path, parts, controllers=[path])
     assert len(verdict.spins) == 4
     assert verdict.good, verdict.faults
+
+
+def test_joints_that_meet_the_ground_together_are_commanded_alone(tmp_path):
+    """Both beams are 0.5 m long, at 0.6 m: together, their tip is there after 1 s at 0.5 rad/s."""
+    tip = (
+        '<collision><origin xyz="0.5 0 0"/><geometry><sphere radius="0.03"/></geometry></collision>'
+        "</link>"
+    )
+    parts = link("upper", "base", mass=1.0, place="0.2 0 0.6", axis="0 1 0", kind="revolute")
+    parts += link(
+        "lower", "upper", mass=1.0, place="0.5 0 0", axis="0 1 0", kind="revolute"
+    ).replace("</link>", tip)
+    plugins = "".join(
+        '<gazebo><plugin name="p" filename="gz-sim-joint-controller-system"><joint_name>'
+        f"{name}_joint</joint_name></plugin></gazebo>"
+        for name in ("upper", "lower")
+    )
+    verdict = tried(tmp_path, BASE.format(mass=200), parts.replace('"-3"', '"-0.1"'), plugins)
+    assert {spin.joint for spin in verdict.spins} == {"upper_joint", "lower_joint"}
+    assert all(spin.commanded > 0 for spin in verdict.spins)
+    assert verdict.good, verdict.faults

@@ -42,6 +42,9 @@ _ACCELERATION = 5.0
 would accelerate a light link beyond all bounds."""
 SPEEDING, _MEASURED, _PUSHING = 1.0, 1.0, 0.5
 """s."""
+_ALONE, _SOON = 12, 0.3
+"""Maximum number of topics whose joints are commanded alone, and the time until they are measured
+and while they are, s."""
 _GLIMPSE, _MOVES = 0.1, 1e-5
 """A shorter time of pushing, s, and the minimum speed in it, rad/s or m/s."""
 
@@ -129,7 +132,8 @@ def _spun(
     """Commands velocities of all joints at once.
 
     Joints that do not follow because of their gains are commanded again, at a higher velocity, of
-    which the error from friction and rolling resistance is a smaller part.
+    which the error from friction and rolling resistance is a smaller part. Others are commanded
+    again alone: an arm whose joints all move may meet the ground.
     """
     slow = list(_spinning(world, model, robot, inputs, gains, velocity=_VELOCITY))
     late = {each.joint for each in slow if not each.follows and gains.get(each.joint)}
@@ -139,7 +143,17 @@ def _spun(
         for each in _spinning(world, model, robot, again, gains, velocity=_FAST)
         if each.joint in late and each.follows
     }
-    yield from (fast.get((each.topic, each.joint), each) for each in slow)
+    found = [fast.get((each.topic, each.joint), each) for each in slow]
+    blocked = {each.topic for each in found if not each.follows}
+    alone = {
+        (each.topic, each.joint): each
+        for one in [each for each in inputs if each.info.name in blocked][:_ALONE]
+        if len(inputs) > 1
+        for each in _spinning(world, model, robot, [one], gains, velocity=_VELOCITY, soon=True)
+        if each.follows
+    }
+    for each in found:
+        yield each if each.follows else alone.get((each.topic, each.joint), each)
 
 
 def _spinning(
@@ -150,7 +164,9 @@ def _spinning(
     gains: Mapping[str, float],
     *,
     velocity: float,
+    soon: bool = False,
 ) -> Iterator[Spin]:
+    """Commands velocities, and measures them after a while or `soon`."""
     if not inputs:
         return
     speeds: dict[str, float] = {}
@@ -162,15 +178,16 @@ def _spinning(
         speeds[name] = sign * _velocity(joint, model.joint(name), velocity)
         return speeds[name]
 
-    begun = SPEEDING if velocity == _VELOCITY else _FASTER
-    before, after = _moved(world, model, inputs, speed_of, (begun, begun + _MEASURED))
+    begun = _SOON if soon else SPEEDING if velocity == _VELOCITY else _FASTER
+    measured = _SOON if soon else _MEASURED
+    before, after = _moved(world, model, inputs, speed_of, (begun, begun + measured))
     for each in inputs:
         for name in each.joints:
             yield Spin(
                 topic=each.info.name,
                 joint=name,
                 commanded=speeds[name],
-                measured=(after[name] - before[name]) / _MEASURED,
+                measured=(after[name] - before[name]) / measured,
                 effort=False,
                 sag=_sag(world, model, name, gains.get(name, 0.0)),
             )

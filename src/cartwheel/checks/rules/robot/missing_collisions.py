@@ -53,6 +53,9 @@ def base_no_collision(subject: Subject) -> Iterator[Diagnostic]:
             if root in robot.inbound or any(link.collisions for link in links):
                 continue
             seen = next((link for link in links if link.visuals), None)
+            if nowhere and root != "world":
+                # Even if it looks like nothing, such as a sensor that other models include.
+                seen = seen or links[0]
             if seen is None or not robot.whole(root):
                 continue
             node = next(
