@@ -289,8 +289,8 @@ def test_the_driven_wheels_on_both_axles_of_a_car_do_not_skid(told):
     assert finding.instead == f"<wheel_separation>{TRACK:g}</wheel_separation>"
 
 
-def test_wheels_that_stand_beside_their_joints_may_be_stated_either_way(told):
-    """The tyres of the rear axle are 0.05 m further out than their joints."""
+def test_the_distance_of_the_joints_of_wheels_beside_them_is_a_note(told):
+    """The tyres of the rear axle are 0.05 m further out than their joints, and turn the robot."""
     drive = {**REAR, "wheel_diameter": 2 * RADIUS}
 
     def said(separation):
@@ -304,9 +304,11 @@ def test_wheels_that_stand_beside_their_joints_may_be_stated_either_way(told):
             )
         return told(text)
 
-    assert said(TRACK) == []
+    (note,) = said(TRACK)
+    assert note.severity == "info" and note.values["measured"] == pytest.approx(TRACK + 0.1)
     assert said(TRACK + 0.1) == []
     (finding,) = said(TRACK + 0.3)
+    assert finding.severity == "warning"
     assert finding.instead == f"<wheel_separation>{TRACK + 0.1:g}</wheel_separation>"
 
 

@@ -95,6 +95,31 @@ def test_swapped_wheels_are_reported(drive):
     assert made.model.pose.rpy[2] < -0.5
 
 
+@pytest.mark.parametrize("wrong", ["", "left", "right"])
+def test_wheels_of_a_robot_that_faces_y_turn_about_x(make, tmp_path, wrong):
+    """Its left is toward -x, so both axes point there."""
+    urdf = cart(ROS1).replace('rpy="1.5707963 0 0"', 'rpy="0 1.5707963 0"')
+    for side, y in (("left", TRACK / 2), ("right", -TRACK / 2)):
+        axis = "1 0 0" if side == wrong else "-1 0 0"
+        urdf = urdf.replace(
+            f'<origin xyz="0 {y} 0"/><axis xyz="0 1 0"/>',
+            f'<origin xyz="{-y} 0 0"/><axis xyz="{axis}"/>',
+        )
+    urdf = urdf.replace('xyz="0.15 0 -0.06"', 'xyz="0 0.15 -0.06"')
+    urdf = urdf.replace('xyz="-0.15 0 -0.06"', 'xyz="0 -0.15 -0.06"')
+    base = {
+        "type": "diff_drive_controller/DiffDriveController",
+        "left_wheel": "left_joint",
+        "right_wheel": "right_joint",
+    }
+    made = Drive(make, tmp_path, urdf, {"base": base | {"wheel_separation": TRACK}})
+    found = [each for each in made.world.diagnostics if each.code is robot.WHEEL_AXIS_MISALIGNED]
+    assert [each.values["joint"] for each in found] == ([f"{wrong}_joint"] if wrong else [])
+    if not wrong:
+        made.go(2.0, linear=0.5)
+        assert made.model.pose.y == pytest.approx(1.0, rel=0.05)
+
+
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_negative_multiplier_belongs_to_a_reversed_wheel(make, tmp_path, side):
     urdf = cart(ROS1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -48,21 +49,23 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
         if slides and min(apart, joints) <= one.used <= _widest(one, apart):
             # Such a robot needs a larger value, which a multiplier may contribute.
             continue
-        # A wheel may be offset from its joint; either distance is accepted.
-        if differs(one.used, apart, LEAST) and differs(one.used, joints, LEAST):
+        if differs(one.used, apart, LEAST):
             more = "more" if one.used > apart else "less"
             said = (
                 "the wheels are"
                 if one.measure == "apart"
                 else "half the sum of wheel base and track is"
             )
-            yield size_mismatch(
+            found = size_mismatch(
                 robot_codes.WHEEL_SEPARATION_MISMATCH,
                 one,
                 apart,
                 f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}, so the robot turns "
                 f"{abs(one.used / apart - 1):.0%} {more} than commanded",
             )
+            # A wheel may be offset from its joint, and the author measured between the joints.
+            offset = not differs(one.used, joints, LEAST)
+            yield replace(found, severity="info") if offset else found
 
 
 def _widest(one: Stated, track: float) -> float:

@@ -22,12 +22,11 @@ from cartwheel.dialects.ros_control.controllers.odometry import (
 )
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
-    LEFT,
-    RIGHT,
     FramePrefixParameters,
     check_axis,
     frame_prefix,
     joint_place,
+    leftward,
     wheel_radius,
 )
 from cartwheel.dialects.ros_control.parameters import ignored, parameter, ros2_parameter
@@ -139,11 +138,12 @@ class DiffDriveController(Controller):
             given.radius_factor if each is None else each
             for each in (given.left_factor, given.right_factor)
         )
+        first_left, first_right = claims[0].joint, claims[len(left)].joint
+        x, y, z = leftward(self.part.description, first_left, first_right)
         for index, wheel in enumerate(claims):
             # A negative multiplier turns the wheels of a side in the other direction.
             reversed_ = (left_factor if index < len(left) else right_factor) < 0
-            check_axis(self, wheel.joint, RIGHT if reversed_ else LEFT)
-        first_left, first_right = claims[0].joint, claims[len(left)].joint
+            check_axis(self, wheel.joint, (-x, -y, -z) if reversed_ else (x, y, z))
         if are_swapped(self.part.description, first_left, first_right):
             self.warn(
                 robot.WHEELS_SWAPPED,

@@ -16,6 +16,8 @@ from cartwheel.geometry import Array, matrix_from_quat
 
 LEFT, RIGHT, UP = (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)
 """Rotation axes of wheels, of reversed wheels and of steering joints, in the robot's base frame."""
+_SIDEWAYS = 0.2
+"""Ratio of the distances of two wheels along y and x below which a robot faces along y."""
 
 
 def joint_place(description: RobotDescription, joint: str) -> tuple[float, float, float]:
@@ -25,6 +27,18 @@ def joint_place(description: RobotDescription, joint: str) -> tuple[float, float
     poses = link_poses(description, {})
     front = poses[description.canonical_link].inverse()
     return (front @ poses[described.child]).position
+
+
+def leftward(description: RobotDescription, left: str, right: str) -> tuple[float, float, float]:
+    """Returns the axis of wheels that roll forward, by the places of a left and a right joint.
+
+    It is along y, except in a robot that faces along its own y axis.
+    """
+    one, other = joint_place(description, left), joint_place(description, right)
+    across, along = one[1] - other[1], one[0] - other[0]
+    if abs(across) >= _SIDEWAYS * abs(along):
+        return LEFT
+    return (1.0, 0.0, 0.0) if along > 0 else (-1.0, 0.0, 0.0)
 
 
 def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, float]) -> None:
