@@ -10,6 +10,8 @@ from tests.coded import coded, raises
 
 import cartwheel as cw
 from cartwheel.codes import devices, graph, running
+from cartwheel.corpus import try_robot
+from cartwheel.dialects.plugin_files import using
 from cartwheel.errors import Code, PluginError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plugin"
@@ -373,3 +375,25 @@ def test_a_wrong_response_of_a_plugin_is_an_error(
 ) -> None:
     with server(tmp_path, response) as world, raises(code):
         world.call("/read")
+
+
+def test_a_check_reads_the_tags_of_a_plugin_in_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "crate.urdf"
+    text = (EXAMPLE / "robot.urdf").read_text().replace("limit>", "limitt>")
+    path.write_text(text)
+    found = {each.code for each in cw.check(path).findings}
+    assert devices.PLUGIN_UNKNOWN in found and devices.PLUGIN_PARAMETER_UNKNOWN not in found
+    found = {each.code for each in cw.check(path, plugins=[EXAMPLE / "tilt_alarm.py"]).findings}
+    assert devices.PLUGIN_UNKNOWN not in found and devices.PLUGIN_PARAMETER_UNKNOWN in found
+    # The next check does not know it any more.
+    assert devices.PLUGIN_UNKNOWN in {each.code for each in cw.check(path).findings}
+    with raises(devices.PLUGIN_FILE_INVALID):
+        cw.check(path, plugins=[tmp_path / "absent.py"])
+
+
+def test_the_corpus_tries_a_robot_with_a_plugin_in_a_file() -> None:
+    robot = EXAMPLE / "robot.urdf"
+    with using([EXAMPLE / "tilt_alarm.py"]):
+        verdict = try_robot(robot, standing=1.0)
+    assert verdict.plugins == ("tilt_alarm",) and not verdict.missing and verdict.good
+    assert try_robot(robot, standing=1.0).missing == ("tilt_alarm",)

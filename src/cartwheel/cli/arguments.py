@@ -59,6 +59,14 @@ RunNames = Annotated[
         "file. Default: the bundled example cart, rosbots.xacro.",
     ),
 ]
+Plugin = Annotated[
+    list[Path] | None,
+    help.option(
+        "--plugin FILE",
+        "Execute this Python file and use the plugins that it defines. Can be repeated.",
+        help.ROBOT,
+    ),
+]
 PackagePath = Annotated[
     list[Path] | None,
     help.option(

@@ -80,6 +80,7 @@ def check(
             help.LOOKUP,
         ),
     ] = None,
+    plugin: arguments.Plugin = None,
 ) -> None:
     """Find mistakes in robot descriptions, with suggested fixes.
 
@@ -101,6 +102,7 @@ def check(
         format="json" if json else format.value,
         strict=strict,
         controllers=controllers or [],
+        plugins=plugin or [],
         accepted=baseline,
         write_baseline=write_baseline,
         fix=fix and not diff,

@@ -22,10 +22,13 @@ def corpus(
         ),
     ] = 10.0,
     package_path: arguments.PackagePath = None,
+    plugin: arguments.Plugin = None,
 ) -> None:
     """Test whether each robot in a folder loads, stands and moves."""
     from cartwheel.cli.commands import corpus as work
+    from cartwheel.dialects.plugin_files import using
 
-    status = work.corpus(folders, package_path or [], json=json, standing=standing)
+    with using(plugin or ()):
+        status = work.corpus(folders, package_path or [], json=json, standing=standing)
     if status:
         raise typer.Exit(status)

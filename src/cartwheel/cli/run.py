@@ -51,14 +51,7 @@ def run(
             help.ROBOT,
         ),
     ] = None,
-    plugin: Annotated[
-        list[Path] | None,
-        help.option(
-            "--plugin FILE",
-            "Execute this Python file and use the plugins that it defines. Can be repeated.",
-            help.ROBOT,
-        ),
-    ] = None,
+    plugin: arguments.Plugin = None,
     speed: Annotated[
         str,
         help.option(

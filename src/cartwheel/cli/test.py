@@ -105,13 +105,7 @@ def test(  # noqa: PLR0917 - typer passes them by name
         bool,
         help.option("--schema", "Print the JSON Schema of scenarios, for editors.", help.REPORT),
     ] = False,
-    plugin: Annotated[
-        list[Path] | None,
-        help.option(
-            "--plugin FILE",
-            "Execute this Python file and use the plugins that it defines. Can be repeated.",
-        ),
-    ] = None,
+    plugin: arguments.Plugin = None,
     package_path: arguments.PackagePath = None,
 ) -> None:
     """Run scenarios with robots and check expectations.

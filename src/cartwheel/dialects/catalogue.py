@@ -6,12 +6,14 @@ the rest of the startup.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
 import importlib
 import importlib.metadata
 import re
 from collections.abc import Iterator, Sequence
+from contextvars import ContextVar
 from typing import Any
 
 from cartwheel.dialects.generated import PLUGINS, SENSORS
@@ -19,6 +21,7 @@ from cartwheel.dialects.plugin import Plugin
 
 ROS_CONTROL = "gazebo_ros_control"
 Plugins = Sequence[type[Plugin[Any]]]
+_ADDED: ContextVar[Plugins] = ContextVar("added plugins", default=())
 
 
 def short_name(filename: str) -> str:
@@ -39,7 +42,7 @@ def plugin_named(filename: str, more: Plugins = ()) -> type[Plugin[object]] | No
             over Cartwheel's own.
     """
     name = short_name(filename)
-    for plugin in (*more, *_third()):
+    for plugin in (*more, *_ADDED.get(), *_third()):
         if name in _names(plugin):
             return plugin
     if name not in PLUGINS and name.endswith(f"_{ROS_CONTROL}"):
@@ -51,7 +54,7 @@ def plugin_named(filename: str, more: Plugins = ()) -> type[Plugin[object]] | No
 
 def plugin_serving(kind: str, more: Plugins = ()) -> type[Plugin[object]] | None:
     """Returns the plugin for sensors of a type that need no ``<plugin>``, or None."""
-    for plugin in (*more, *_third()):
+    for plugin in (*more, *_ADDED.get(), *_third()):
         if kind in plugin.serves:
             return plugin
     ours = _within(SENSORS[kind]) if kind in SENSORS else ()
@@ -60,7 +63,20 @@ def plugin_serving(kind: str, more: Plugins = ()) -> type[Plugin[object]] | None
 
 def plugin_names(more: Plugins = ()) -> list[str]:
     """Returns the short names of all plugins."""
-    return [*PLUGINS, *(name for plugin in (*_third(), *more) for name in _names(plugin))]
+    return [
+        *PLUGINS,
+        *(name for plugin in (*_third(), *_ADDED.get(), *more) for name in _names(plugin)),
+    ]
+
+
+@contextlib.contextmanager
+def adding(plugins: Plugins) -> Iterator[None]:
+    """Within the block, these plugins take precedence over those of installed packages."""
+    before = _ADDED.set((*plugins, *_ADDED.get()))
+    try:
+        yield
+    finally:
+        _ADDED.reset(before)
 
 
 def all_plugins() -> list[type[Plugin[object]]]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from cartwheel.codes import devices
 from cartwheel.codes.graph import MESSAGE_DEFINITION_INVALID
-from cartwheel.dialects.catalogue import checked_plugin, short_name
+from cartwheel.dialects.catalogue import adding, checked_plugin, short_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.errors import CartwheelError, GraphError, Origin
 
@@ -33,6 +34,23 @@ class PluginFiles:
             CartwheelError: The file does not exist, raises an exception or defines no plugin.
         """
         self.classes = (*_plugins_in(path), *self.classes)
+
+
+@contextlib.contextmanager
+def using(paths: Sequence[Path]) -> Iterator[None]:
+    """Within the block, the plugins in the files are known to checks and to simulations.
+
+    Args:
+        paths: Python files, which are executed.
+
+    Raises:
+        CartwheelError: As `PluginFiles.load`.
+    """
+    files = PluginFiles()
+    for path in paths:
+        files.load(path)
+    with adding(files.classes):
+        yield
 
 
 def _plugins_in(path: Path) -> list[type[Plugin[Any]]]:

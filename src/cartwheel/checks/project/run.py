@@ -13,6 +13,7 @@ from cartwheel.checks.project.baseline import Baseline
 from cartwheel.checks.project.selection import Selection
 from cartwheel.checks.project.settings import Settings, settings_for
 from cartwheel.checks.project.suppressions import Suppressions
+from cartwheel.dialects.plugin_files import using
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 
@@ -56,6 +57,7 @@ def check(
     baseline: Path | None = None,
     settings: bool = True,
     use_baseline: bool = True,
+    plugins: Sequence[Path] = (),
 ) -> Result:
     """Finds mistakes in a description, or in all descriptions in a folder.
 
@@ -72,11 +74,12 @@ def check(
         baseline: A file with accepted findings, instead of the settings' baseline.
         settings: Whether to read ``cartwheel.toml`` or ``pyproject.toml`` in or above the path.
         use_baseline: False to also report findings that the baseline accepts.
+        plugins: Python files that define plugins. They are executed.
 
     Raises:
         DescriptionError: A single file cannot be read at all, or is not a description.
         UnknownNameError: A code does not exist.
-        CartwheelError: The settings or the baseline cannot be read.
+        CartwheelError: The settings, the baseline or a plugin cannot be read.
     """
     project = settings_for(Path(path)) if settings and Path(path).exists() else Settings()
     selection = Selection.of(select or project.select, (*project.ignore, *ignore))
@@ -84,9 +87,11 @@ def check(
     accepted = Baseline.read(accepted_file) if accepted_file is not None else None
     folder = Path(path).is_dir() and not (Path(path) / "model.config").is_file()
     files = workspace.descriptions(Path(path)) if folder else [Path(path)]
-    reports = tuple(
-        _report(file, arguments or {}, package_path, controllers, folder=folder) for file in files
-    )
+    with using(plugins):
+        reports = tuple(
+            _report(file, arguments or {}, package_path, controllers, folder=folder)
+            for file in files
+        )
     return _result(str(path), reports, selection, accepted, strict=project.strict)
 
 

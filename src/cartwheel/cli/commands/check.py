@@ -31,6 +31,7 @@ def check(
     format: str = "text",
     strict: bool = False,
     controllers: Sequence[Path] = (),
+    plugins: Sequence[Path] = (),
     accepted: Path | None = None,
     write_baseline: Path | None = None,
     fix: bool = False,
@@ -47,6 +48,7 @@ def check(
         format: ``text`` or one of `FORMATS`.
         strict: Whether notes count as findings.
         controllers: Files of controllers, in place of those that lie near the robot.
+        plugins: Python files with plugins, which are executed.
         accepted: The baseline.
         write_baseline: Where to write a baseline of all findings instead of printing them.
         fix: Whether to write the fixes that are beyond doubt.
@@ -63,6 +65,7 @@ def check(
             ignore=ignore,
             baseline=accepted,
             use_baseline=write_baseline is None,
+            plugins=plugins,
         )
 
     result = checked()
