@@ -219,3 +219,9 @@ DRIVES_APART = Code(
     "info",
     "drives with topics of their own move the same robot, and brake each other",
 )
+WHEEL_SPEED_LIMITED = Code(
+    "CW253",
+    "wheel-speed-limited",
+    "warning",
+    "the velocity limit of a wheel's joint lets the robot hardly drive",
+)

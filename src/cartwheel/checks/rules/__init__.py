@@ -55,6 +55,7 @@ from cartwheel.checks.rules.wheels import (
     wheel_separation,
     wheel_shapes,
     wheel_sides,
+    wheel_speed,
     wheels_off_ground,
 )
 
@@ -75,6 +76,7 @@ RULES: tuple[Rule, ...] = tuple(
         light_roots,
         drive_joints,
         wheel_sides,
+        wheel_speed,
         wheel_axes,
         wheel_shapes,
         wheel_separation,
