@@ -42,11 +42,14 @@ class ControllerEntry:
     """Parameters that the file gives to all nodes. Unknown ones cause no warning."""
     remappings: Mapping[str, str] = field(default_factory=dict)
     """Remapped topic names: new names by old names."""
+    misplaced: frozenset[str] = frozenset()
+    """Names of values beside the type, in the manager's parameters, which ROS 2 does not use."""
 
     def settings(self) -> Settings:
         """Returns the parameters of the controller."""
         settings = Settings(self.values, self.name, self.source)
         settings.ignore("use_sim_time", *self.shared)
+        settings.misplaced = self.misplaced
         return settings
 
 
@@ -331,6 +334,7 @@ def controller_entry(file: Ros2File, name: str, namespace: str, source: str) -> 
         source=source,
         shared=tuple(key for key in file.shared if key not in own),
         remappings=remappings(listed.get("node_options_args", [])),
+        misplaced=frozenset(map(str, listed)),
     )
 
 

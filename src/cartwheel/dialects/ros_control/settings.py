@@ -36,6 +36,8 @@ class Settings:
         self._read: set[str] = set()
         """Full names; shared with all sections."""
         self._prefix = ""
+        self.misplaced: frozenset[str] = frozenset()
+        """Parameters that the file states among those of the controller manager."""
 
     def has(self, name: str) -> bool:
         """Whether a parameter exists."""
@@ -181,6 +183,9 @@ class Settings:
     def missing(self, name: str, hint: str = "") -> PluginError:
         """Returns the error for a required parameter that is missing. The caller raises it."""
         meant = meant_one(name, list(_leaves(self._values)))
+        if self._prefix + name in self.misplaced:
+            hint = "It is among the parameters of the controller manager. Move it to "
+            hint += f"{self.name}: ros__parameters."
         return self.error(
             devices.CONTROLLER_PARAMETER_MISSING,
             f'the parameter "{self._prefix}{name}" is missing',

@@ -281,3 +281,23 @@ def test_wheels_that_two_controllers_want_go_to_the_base_s(make, tmp_path):
     assert drive.odometry().twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
     (told,) = coded(drive.world, running.CONTROLLER_NOT_STARTED)
     assert told.values["cause"] == running.CONTROLLER_CONFLICT.number
+
+
+@pytest.mark.wording
+def test_parameters_among_those_of_the_manager_are_found(make, tmp_path):
+    """ROS 2 gives a controller only the parameters of its own node."""
+    file = tmp_path / "controllers.yaml"
+    own = {
+        "type": "diff_drive_controller/DiffDriveController",
+        "left_wheel_names": ["left_joint"],
+        "right_wheel_names": ["right_joint"],
+    }
+    manager = {"ros__parameters": {"base": own}}
+    file.write_text(yaml.safe_dump({"controller_manager": manager}))
+    robot = tmp_path / "cart.urdf"
+    robot.write_text(cart(ROS2.format(file=file)))
+    world = make.world()
+    world.spawn(robot, z=RADIUS)
+    (refused,) = coded(world, running.CONTROLLER_NOT_STARTED)
+    assert "left_wheel_names" in refused.message
+    assert refused.hint.endswith("Move it to base: ros__parameters.")
