@@ -381,6 +381,7 @@ def test_an_image_without_colours_and_depths_is_refused():
         (lambda cart: reaches(cart, 1.0), "target"),
         (lambda cart: reaches(cart, (1.0,)), "target"),
         (lambda cart: reaches(cart, (1.0, "far")), "target"),
+        (lambda cart: reaches(cart, (1.0, math.nan)), "target"),
         (lambda cart: sees(cart, CAMERA, share=0.5), "share"),
         (lambda cart: sees(cart, CAMERA, within=0.5), "within"),
     ],
@@ -389,6 +390,50 @@ def test_a_condition_that_says_nothing_is_refused(cart, check, name):
     with raises(OPTION_INVALID, name=name):
         check(cart)
     assert cart._world.time == 0.0
+
+
+NAN, INF = math.nan, math.inf
+
+
+@pytest.mark.parametrize(
+    ("check", "name"),
+    [
+        (lambda cart: reaches(cart, (1, 0), within="a"), "within"),
+        (lambda cart: reaches(cart, (1, 0), within=-1), "within"),
+        (lambda cart: reaches(cart, (1, 0), yaw=NAN), "yaw"),
+        (lambda cart: reaches(cart, (1, 0), timeout=INF), "timeout"),
+        (lambda cart: reaches(cart, (1, 0), timeout=-1), "timeout"),
+        (lambda cart: stays_within(cart, tilt=NAN), "tilt"),
+        (lambda cart: stays_within(cart, speed="a"), "speed"),
+        (lambda cart: stays_within(cart, x=(0, 1), seconds=-1), "seconds"),
+        (lambda cart: stays_within(cart, x=(0, 1), seconds="a"), "seconds"),
+        (lambda cart: moves(cart, distance=0), "distance"),
+        (lambda cart: publishes(cart, "/odom", rate=0), "rate"),
+        (lambda cart: publishes(cart, "/odom", rate=10, tolerance=NAN), "tolerance"),
+        (lambda cart: sees(cart, CAMERA, range="2"), "range"),
+        (lambda cart: sees(cart, CAMERA, range=2, within=NAN), "within"),
+        (lambda cart: sees(cart, CAMERA, color=1), "color"),
+        (lambda cart: sees(cart, CAMERA, color=(1, 0, 0), share=2), "share"),
+        (lambda cart: keeps_clear(cart, "ground_plane", distance=NAN), "distance"),
+        (lambda cart: joint_reaches(cart, "wheel_left_joint", NAN), "position"),
+        (lambda cart: joint_reaches(cart, "wheel_left_joint", 0, within="a"), "within"),
+        (lambda cart: touches(cart, timeout=NAN), "timeout"),
+        (lambda cart: touches_nothing(cart, seconds=INF), "seconds"),
+    ],
+)
+def test_a_number_that_cannot_be_is_refused(cart, check, name):
+    with raises(VALUE_INVALID, name=name):
+        check(cart)
+    assert cart._world.time == 0.0
+
+
+@pytest.mark.parametrize(("x", "code"), [((0, NAN), OPTION_INVALID), ((-INF, 1), None)])
+def test_limits_may_be_open_but_not_unknown(cart, x, code):
+    if code is None:
+        stays_within(cart, x=x, seconds=0.1)
+    else:
+        with raises(code, name="x"):
+            stays_within(cart, x=x)
 
 
 @pytest.mark.parametrize(

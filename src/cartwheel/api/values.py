@@ -46,7 +46,8 @@ def array(values: object, shape: tuple[int, ...], name: str) -> Array:
         made = np.empty(0)
     if made.shape != shape or not np.isfinite(made).all():
         size = " x ".join(map(str, shape))
-        raise invalid(name, f"must be {size} finite numbers", values)
+        wanted = f"must be {size} finite numbers" if shape else "must be a finite number"
+        raise invalid(name, wanted, values)
     return made
 
 

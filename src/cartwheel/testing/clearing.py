@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from cartwheel.api.values import scalar
 from cartwheel.errors import UnknownNameError
 from cartwheel.testing.conditions import Condition, shown
 from cartwheel.testing.subjects import matching
@@ -29,7 +30,8 @@ class KeepsClear(Condition):
         self, model: str, other: str | None, distance: float, *, ignore: Sequence[str] = ()
     ) -> None:
         super().__init__()
-        self.model, self.other, self.distance, self.ignore = model, other, distance, ignore
+        self.model, self.other, self.ignore = model, other, ignore
+        self.distance = scalar(distance, "distance")
         self.closest = math.inf
         self.closest_time = 0.0
         self._nearest: Clearance | None = None

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from cartwheel.api.arguments import refused
+from cartwheel.api.values import scalar
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.errors import CartwheelError
 from cartwheel.testing.subjects import pose_of
@@ -96,9 +97,10 @@ class Reaches(Condition):
         yaw_within: float = 0.1,
     ) -> None:
         super().__init__()
-        self.model, self.within = model, within
+        self.model, self.within = model, scalar(within, "within", least=0.0)
         self.target = _target(target)
-        self.yaw, self.yaw_within = yaw, yaw_within
+        self.yaw = None if yaw is None else scalar(yaw, "yaw")
+        self.yaw_within = scalar(yaw_within, "yaw_within", least=0.0)
         if yaw is None and all(each is None for each in self.target):
             raise refused("target", "at least one number if there is no yaw", target)
         self.closest, self.closest_time = math.inf, 0.0
@@ -189,7 +191,9 @@ class StaysWithin(Condition):
         speed: float | None = None,
     ) -> None:
         super().__init__()
-        self.model, self.tilt, self.speed = model, tilt, speed
+        self.model = model
+        self.tilt = None if tilt is None else scalar(tilt, "tilt", least=0.0)
+        self.speed = None if speed is None else scalar(speed, "speed", least=0.0)
         self.limits = {name: _limits(name, each) for name, each in limits.items()}
         if not limits and tilt is None and speed is None:
             raise CartwheelError(
@@ -271,7 +275,7 @@ class Moves(Condition):
 
     def __init__(self, model: str, distance: float = 0.1) -> None:
         super().__init__()
-        self.model, self.distance = model, distance
+        self.model, self.distance = model, scalar(distance, "distance", above=0.0)
         self.moved = 0.0
         self._start: Pose | None = None
 
@@ -310,7 +314,9 @@ class JointAt(Condition):
 
     def __init__(self, model: str, joint: str, position: float, *, within: float = 0.05) -> None:
         super().__init__()
-        self.model, self.joint, self.position, self.within = model, joint, position, within
+        self.model, self.joint = model, joint
+        self.position = scalar(position, "position")
+        self.within = scalar(within, "within", least=0.0)
         self.closest, self.closest_time, self.last = math.inf, 0.0, math.nan
 
     def begin(self, world: World) -> None:
@@ -346,7 +352,7 @@ def _target(target: Sequence[float | None]) -> tuple[float | None, ...]:
         found = tuple(None if each is None else float(each) for each in target)
     except (TypeError, ValueError):
         found = ()
-    if len(found) not in (2, 3):
+    if len(found) not in (2, 3) or not all(each is None or math.isfinite(each) for each in found):
         raise refused("target", "x and y, or x, y and z, in m", target)
     return found + (None,) * (3 - len(found))
 
@@ -358,6 +364,8 @@ def _limits(name: str, limits: Sequence[float]) -> Range:
     except (TypeError, ValueError):
         unit = "rad" if name == "yaw" else "m"
         raise refused(name, f"a minimum and a maximum in {unit}", limits) from None
+    if math.isnan(low) or math.isnan(high):
+        raise refused(name, "two numbers", limits)
     if low > high:
         error = refused(name, "a minimum and a maximum, in this order", limits)
         error.hint = f"The limits are swapped. Write ({high:g}, {low:g})."

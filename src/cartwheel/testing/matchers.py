@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from cartwheel.api.values import scalar
 from cartwheel.errors import Pickled
 from cartwheel.testing.clearing import KeepsClear
 from cartwheel.testing.conditions import (
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from cartwheel.geometry import Pose
 
 Limits = tuple[float, float]
+_LONGEST = 1e9
+"""Longest simulation time of a test, s, as for `World.run`."""
 
 
 class UnmetError(Pickled, AssertionError):
@@ -346,7 +349,7 @@ def joint_reaches(
 
 def _until(world: World, condition: Condition, timeout: float) -> float:
     __tracebackhide__ = True
-    _check(world, condition, "once", timeout)
+    _check(world, condition, "once", scalar(timeout, "timeout", least=0.0, most=_LONGEST))
     return world.time
 
 
@@ -357,6 +360,7 @@ def _always(world: World, condition: Condition, seconds: float) -> None:
 
 def _check(world: World, condition: Condition, when: When, seconds: float) -> None:
     __tracebackhide__ = True
+    seconds = scalar(seconds, "seconds", least=0.0, most=_LONGEST)
     watch = Watch(condition, when)
     try:
         watch.begin(world)

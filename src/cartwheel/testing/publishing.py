@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+from cartwheel.api.values import scalar
 from cartwheel.testing.conditions import Condition
 
 if TYPE_CHECKING:
@@ -22,7 +23,9 @@ class Publishes(Condition):
 
     def __init__(self, topic: str, rate: float | None = None, *, tolerance: float = 0.1) -> None:
         super().__init__()
-        self.topic, self.rate, self.tolerance = topic, rate, tolerance
+        self.topic = topic
+        self.rate = None if rate is None else scalar(rate, "rate", above=0.0)
+        self.tolerance = scalar(tolerance, "tolerance", least=0.0)
         self.count = self._later = 0
         self._faulty = False
         self.passed = 0.0

@@ -78,11 +78,12 @@ class Sees(Condition):
         for name in self._asked:
             if _NEEDS.get(name, name) not in self._asked:
                 raise refused(name, f"used with {_NEEDS[name]}", given[name])
-        self.topic, self.range, self.model = topic, range, model
-        self.within = _WITHIN if within is None else within
+        self.topic, self.model = topic, model
+        self.range = None if range is None else scalar(range, "range", least=0.0)
+        self.within = _WITHIN if within is None else scalar(within, "within", least=0.0)
         self.angle = None if angle is None else scalar(angle, "angle")
         self.color = None if color is None else _checked(color)
-        self.share = _SHARE if share is None else share
+        self.share = _SHARE if share is None else scalar(share, "share", least=0.0, most=1.0)
         self.nearest: float | None = None
         self.seen_share: float | None = None
         self._pixels: Any = None
@@ -226,7 +227,7 @@ class Sees(Condition):
             if self.range is None:
                 return f"the distance was {self.nearest:.3f} m"
             return f"the most similar one was {self.nearest:.3f} m"
-        return f"{self.count} messages contained no object"
+        return f"{self.count} message{'s' * (self.count > 1)} contained no object"
 
     @property
     def values(self) -> Mapping[str, float | str | None]:
@@ -235,7 +236,11 @@ class Sees(Condition):
 
 def _checked(color: Sequence[float]) -> tuple[float, ...]:
     """Red, green and blue from 0 to 1."""
-    values = array(color[:3], (3,), "color")
+    try:
+        opaque = color[:3]
+    except TypeError:
+        opaque = ()
+    values = array(opaque, (3,), "color")
     if values.min() < 0.0 or values.max() > 1.0:
         error = invalid("color", "must be red, green and blue from 0 to 1", tuple(color))
         error.hint = "Divide values from 0 to 255 by 255."
