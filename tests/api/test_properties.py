@@ -617,7 +617,8 @@ def test_a_change_by_a_callback(box, make):
         ),
         ("center_of_mass", (1.0, (0, 0), (0, 0, math.inf))),
         ("friction", (-0.1, math.nan, (1, 2, 3), "rough")),
-        ("color", (0.5, (1, 2, 3), (0, 0), "red", (0, 0, 0, math.nan))),
+        ("color", (0.5, (1, 2, 3), (0, 0), "red", (0, 0, 0, math.nan), (0, 0, 0, 1, 1))),
+        ("gravity", ("no", None, 0.5, 2)),
         ("texture", (np.zeros((4, 4)), np.zeros((4, 4, 3)), np.zeros((0, 4, 3), dtype=np.uint8))),
     ],
 )
@@ -643,8 +644,9 @@ def test_values_that_a_joint_cannot_have(pendulum):
     for limits in ((1.0, 0.0), (0.0,), (math.nan, 1.0), 3.0):
         with raises(VALUE_INVALID):
             hinge.limits = limits
-    with raises(VALUE_INVALID):
-        hinge.gains = cw.Gains(math.nan)
+    for gains in (cw.Gains(math.nan), 100.0, (1.0, 2.0, 3.0)):
+        with raises(VALUE_INVALID):
+            hinge.gains = gains
     for gravity in ((0, 0), ("0", "0", "-9.8")):
         with raises(VALUE_INVALID):
             world.gravity = gravity
@@ -664,6 +666,15 @@ def test_properties_that_are_missing(make):
         foot.texture = "nowhere.png"
     with raises(ENTITY_UNKNOWN, UnknownNameError, name="moon"):
         world.light("moon")
+
+
+def test_a_light_is_on_or_off():
+    with cw.World("empty") as world:
+        with raises(VALUE_INVALID, name="on"):
+            world.light("sun").on = "off"
+        assert world.light("sun").on
+        world.light("sun").on = False
+        assert not world.light("sun").on
 
 
 def test_a_closed_world_keeps_its_properties(box):

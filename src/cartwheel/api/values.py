@@ -102,6 +102,17 @@ def scalar(
     return number
 
 
+def flag(value: object, name: str) -> bool:
+    """Whether something is so: True or False, or 1 or 0.
+
+    Raises:
+        CartwheelError: It is anything else, such as a text.
+    """
+    if not isinstance(value, bool | int | np.bool_ | np.integer) or value not in (0, 1):
+        raise invalid(name, "must be True or False", value)
+    return bool(value)
+
+
 def moment_ns(time: Moment, name: str = "the time in s") -> int:
     """A time in s, or the stamp of a message, in ns.
 

@@ -28,9 +28,13 @@ def rgba(colour: Colour, name: str) -> Rgba:
         CartwheelError: There are not three or four numbers from 0 to 1.
     """
     given = list(np.ravel(np.asarray(colour, dtype=object)))
-    made = array(given if len(given) == 4 else [*given, 1.0], (4,), name)
-    if made.min() < 0 or made.max() > 1:
-        raise invalid(name, "must consist of numbers from 0 to 1", colour)
+    try:
+        made = array(given if len(given) == 4 else [*given, 1.0], (4,), name)
+    except CartwheelError:
+        made = np.full(4, np.nan)
+    if not (made.min() >= 0 and made.max() <= 1):
+        wanted = "must be red, green and blue, and alpha if it is not 1, from 0 to 1"
+        raise invalid(name, wanted, colour)
     r, g, b, a = made.tolist()
     return r, g, b, a
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from cartwheel.api.handles import Handle
 from cartwheel.api.properties.inertials import missing
-from cartwheel.api.values import invalid, scalar
+from cartwheel.api.values import instance, invalid, scalar
 from cartwheel.description.model import Joint as Description
 from cartwheel.description.model import RobotDescription
 
@@ -197,6 +197,7 @@ class JointProperties(Handle):
 
     @gains.setter
     def gains(self, gains: Gains) -> None:
+        instance(gains, Gains, "gains", "cartwheel.Gains(p=100.0, i=0.01, d=10.0)")
         given = {name: scalar(getattr(gains, name), name) for name in ("p", "i", "d")}
         with self._joints.world._used(change=True) as simulation:
             if not simulation.truth.set_gains(self._joints.model, self.name, given):

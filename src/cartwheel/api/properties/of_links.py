@@ -32,7 +32,7 @@ from cartwheel.api.properties.surfaces import (
     with_friction,
     with_restitution,
 )
-from cartwheel.api.values import Vector
+from cartwheel.api.values import Vector, flag
 from cartwheel.description.model import Link as Description
 from cartwheel.description.model import Rgba, RobotDescription
 from cartwheel.geometry import Array, Vec3
@@ -150,7 +150,8 @@ class LinkProperties(Handle):
 
     @gravity.setter
     def gravity(self, gravity: bool) -> None:
-        self._change(lambda link: replace(link, gravity=bool(gravity)))
+        on = flag(gravity, "gravity")
+        self._change(lambda link: replace(link, gravity=on))
 
     @property
     def color(self) -> Rgba | None:

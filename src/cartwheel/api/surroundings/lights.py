@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from cartwheel.api.handles import Handle
 from cartwheel.api.properties.appearance import Colour, rgba
-from cartwheel.api.values import Vector, invalid, scalar, vector
+from cartwheel.api.values import Vector, flag, invalid, scalar, vector
 from cartwheel.codes.graph import ENTITY_UNKNOWN
 from cartwheel.description.model import Light as LightDescription
 from cartwheel.errors import UnknownNameError
@@ -70,7 +70,7 @@ class Light(Handle):
 
     @on.setter
     def on(self, on: bool) -> None:
-        self._change(on=bool(on))
+        self._change(on=flag(on, "on"))
 
     @property
     def position(self) -> Vec3:
