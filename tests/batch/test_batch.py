@@ -19,7 +19,6 @@ from cartwheel.codes.world import (
     BATCH_CLOSED,
     BATCH_INVALID,
     BATCH_PROCESS_ENDED,
-    NUMBER_OUT_OF_RANGE,
 )
 from cartwheel.messages.making import expanded, maker
 
@@ -203,7 +202,12 @@ def test_the_names_of_actions_are_in_order(built):
         ({"obs": {"/nothing": "x"}}, TOPIC_UNKNOWN),
         ({"obs": {"/part2_cmr/cmd_vel": "linear.x"}}, NO_MESSAGE),
         ({"obs": {"/odom": "pose.pose.position.w"}}, FIELD_UNKNOWN),
-        ({"period": -1.0}, NUMBER_OUT_OF_RANGE),
+        ({"period": -1.0}, BATCH_INVALID),
+        ({"period": 0.0}, BATCH_INVALID),
+        ({"period": float("nan")}, BATCH_INVALID),
+        ({"seed": "one"}, BATCH_INVALID),
+        ({"seed": -1}, BATCH_INVALID),
+        ({"vary": 3}, BATCH_INVALID),
     ],
 )
 @pytest.mark.parametrize("workers", [0, 1])

@@ -133,6 +133,15 @@ def test_impossible_names(folder, name):
     failure(name)
 
 
+@pytest.mark.parametrize("name", ["", " "])
+def test_an_empty_name_is_not_the_working_folder(folder, name, monkeypatch):
+    (folder / "robot.urdf").write_text('<robot name="r"><link name="l"/></robot>')
+    monkeypatch.chdir(folder)
+    assert find_description(".").name == "robot.urdf"
+    with raises(files.FILE_MISSING, name=name):
+        find_description(name)
+
+
 def test_folders(folder):
     write(folder / "cone" / "model.sdf", SDF)
     assert load(folder / "cone").name == "m"

@@ -184,6 +184,7 @@ def far(world):
     "options",
     [
         {"act": {"/part2_cmr/cmd_vel": {"linear.x": (1.0, 1.0)}}},
+        {"act": {"/part2_cmr/cmd_vel": ["linear.x"]}},
         {"limits": {"pos": (0.0, 1.0)}},
         {"obs": {"far": far}},
         {"reward": lambda before, action, after: 0.0},

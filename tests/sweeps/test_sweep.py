@@ -52,6 +52,9 @@ def test_a_case_that_fails_is_run_again(built, tmp_path, how):
     assert expected in failed.error
     assert found.column("result")[[0, 1, 3]].tolist() == [0.0, 1.0, 3.0]
     assert np.isnan(found.column("result")[2])
+    with raises(SWEEP_INVALID, name="reslut"):
+        found.column("reslut")
+    assert np.isnan(found.failed.column("result")).all()
     Path(log + ".good").touch()
     again = cw.sweep(counted, cases, built, **options)
     assert not again.failed and again.column("result").tolist() == [0.0, 1.0, 2.0, 3.0]

@@ -99,7 +99,9 @@ class Batch:
                 f"built must be the result of cartwheel.build (got {built!r:.60})", "built"
             )
         if isinstance(n, bool) or not isinstance(n, int) or n < 1:
-            raise invalid(f"a batch must have at least one world (got {n})", "n")
+            raise invalid(f"a batch must have at least one world (got {n!r:.60})", "n")
+        if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+            raise invalid(f"the seed must be an integer of at least 0 (got {seed!r:.60})", "seed")
         if backend not in BACKENDS:
             raise invalid(f"the backend must be one of {', '.join(BACKENDS)}", "backend")
         on_device = device if backend == "warp" else None
@@ -110,7 +112,7 @@ class Batch:
         self._plan = Plan.of(act, obs, period=period, vary=vary)
         self._columns = len(self._plan.action_names)
         self.n = n
-        self.seed = seed
+        self.seed = seed = int(seed)
         count = min(n - 1, cores() - 1 if workers is None else workers)
         if count < 0:
             raise invalid(f"the number of processes must be at least 0 (got {count})", "workers")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -83,6 +84,10 @@ class Plan:
         cls, act: Actions, obs: Observations, *, period: float, vary: Vary | None = None
     ) -> Plan:
         """Checks and completes the arguments of `Batch`."""
+        if not isinstance(period, int | float | np.number) or not 0 < period < math.inf:
+            raise invalid(f"the period must be a positive number (got {period!r:.60})", "period")
+        if vary is not None and not callable(vary):
+            raise invalid(f"vary must be a function (got {vary!r:.60})", "vary")
         actions = {name: _action(name, each) for name, each in act.items()}
         if not obs:
             raise invalid("a batch requires at least one observation", "obs")

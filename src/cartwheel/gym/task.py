@@ -76,6 +76,12 @@ class Task:
             if isinstance(action, Mapping):
                 named = action
                 made[name] = list(action)
+            elif len(action) != 2 or not callable(action[0]):
+                raise invalid(
+                    f'the action "{name}" must be a mapping of fields to their limits, or a '
+                    "function with a list of limits",
+                    "act",
+                )
             else:
                 function, limits = action
                 named = {str(index): each for index, each in enumerate(limits)}

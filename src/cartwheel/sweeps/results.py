@@ -11,6 +11,7 @@ import numpy as np
 from cartwheel.codes.wires import PACKAGE_MISSING
 from cartwheel.codes.world import SWEEP_INVALID
 from cartwheel.errors import CartwheelError
+from cartwheel.similar_names import suggestion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,8 +61,21 @@ class Results(Sequence[Row]):
         return Results([row for row in self._rows if row.error])
 
     def column(self, name: str) -> np.ndarray[Any, Any]:
-        """A parameter or value of all cases, NaN where it is missing, shape (n,)."""
-        return np.array([row.flat().get(name, np.nan) for row in self._rows])
+        """A parameter or value of all cases, NaN where it is missing, shape (n,).
+
+        Raises:
+            CartwheelError: No case has it, although not all of them have failed.
+        """
+        lines = [row.flat() for row in self._rows]
+        names = dict.fromkeys(each for line in lines for each in line)
+        if name not in names and len(self.failed) < len(self):
+            raise CartwheelError(
+                f'no case has a parameter or value named "{name}"',
+                code=SWEEP_INVALID,
+                hint=suggestion(name, list(names)),
+                values={"name": name},
+            )
+        return np.array([line.get(name, np.nan) for line in lines])
 
     def columns(self) -> dict[str, list[Any]]:
         """The table by columns; None where a value is missing."""

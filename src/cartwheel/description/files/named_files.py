@@ -29,9 +29,16 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
         package_path: Additional folders to search for packages and models.
 
     Raises:
-        DescriptionError: The file was not found; the hint suggests names.
+        DescriptionError: The file was not found, and the hint suggests names; or the path is empty.
     """
     text = str(path)
+    if not text.strip():
+        # The path of an empty text is the working folder, which nobody means by it.
+        raise DescriptionError(
+            "the name of the file is empty",
+            code=codes.FILE_MISSING,
+            values={"kind": "file", "name": text},
+        )
     # A Path merges the two slashes in a URI.
     for scheme in ("package", "model", "file"):
         if text.startswith(f"{scheme}:/"):
