@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cartwheel.codes.command import OPTION_INVALID, SCENARIO_INVALID
+from cartwheel.codes.command import OPTION_INVALID, SCENARIO_EXPRESSION, SCENARIO_INVALID
 from cartwheel.codes.graph import SERVICE_UNKNOWN, TOPIC_TYPE_MISMATCH, TOPIC_UNKNOWN
 
 from .conftest import CART, DRIVE
@@ -86,6 +86,13 @@ def test_a_field_that_does_not_exist_has_a_suggestion(run):
     assert outcome.status == "error"
     assert 'the field "poes"' in outcome.findings[0].text and '"pose"' in outcome.findings[0].text
     assert "Error" not in outcome.findings[0].text
+
+
+@pytest.mark.parametrize("text", ["x('cart')", "count('/odom')", "'true'", "x('cart') > 1 or 0.5"])
+def test_an_expression_that_compares_nothing_is_an_error(run, text):
+    outcome = run(f'{CART}duration: 0.1\nexpect: [{{expression: "{text}"}}]')
+    assert outcome.status == "error"
+    assert outcome.findings[0].code == SCENARIO_EXPRESSION.number
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 from cartwheel.arrays import single
 from cartwheel.codes.command import SCENARIO_EXPRESSION, SCENARIO_INVALID
 from cartwheel.errors import CartwheelError
@@ -78,6 +80,14 @@ class Expression(Condition):
                 else error.hint,
                 values={"expression": self.text},
             ) from None
+        if not isinstance(self._value, bool | np.bool_):
+            raise CartwheelError(
+                f'the value of the expression "{self.text}" must be true or false '
+                f"(got {_brief(self._value):.60})",
+                code=SCENARIO_EXPRESSION,
+                hint="Compare it with something, such as x('cart') > 1.",
+                values={"expression": self.text},
+            )
         return bool(self._value)
 
     def _names_of(self, world: World) -> dict[str, Any]:
