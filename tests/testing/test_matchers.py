@@ -407,7 +407,7 @@ NAN, INF = math.nan, math.inf
         (lambda cart: stays_within(cart, speed="a"), "speed"),
         (lambda cart: stays_within(cart, x=(0, 1), seconds=-1), "seconds"),
         (lambda cart: stays_within(cart, x=(0, 1), seconds="a"), "seconds"),
-        (lambda cart: moves(cart, distance=0), "distance"),
+        (lambda cart: moves(cart, distance=-1), "distance"),
         (lambda cart: publishes(cart, "/odom", rate=0), "rate"),
         (lambda cart: publishes(cart, "/odom", rate=10, tolerance=NAN), "tolerance"),
         (lambda cart: sees(cart, CAMERA, range="2"), "range"),

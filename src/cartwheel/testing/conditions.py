@@ -275,7 +275,7 @@ class Moves(Condition):
 
     def __init__(self, model: str, distance: float = 0.1) -> None:
         super().__init__()
-        self.model, self.distance = model, scalar(distance, "distance", above=0.0)
+        self.model, self.distance = model, scalar(distance, "distance", least=0.0)
         self.moved = 0.0
         self._start: Pose | None = None
 
