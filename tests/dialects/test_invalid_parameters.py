@@ -14,10 +14,10 @@ from cartwheel.codes.tags import TEXT_AFTER_NUMBER
 from cartwheel.errors import PluginError
 
 _ROBOT = """<robot name="cart"><link name="base"><inertial><mass value="1"/>
-<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><gazebo>
-<plugin name="truth" filename="libgazebo_ros_p3d.so">
-<bodyName>base</bodyName><topicName>truth</topicName>
-{tag}</plugin>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><origin xyz="0 0 2"/><geometry><sphere radius="2"/></geometry></collision></link><gazebo>
+<plugin name="truth" filename="libgazebo_ros_p3d.so"><bodyName>base</bodyName>
+<topicName>truth</topicName>{tag}</plugin>
 <plugin name="other" filename="libgazebo_ros_p3d.so">
 <bodyName>base</bodyName><topicName>other</topicName><updateRate>20</updateRate></plugin>
 </gazebo></robot>"""

@@ -101,6 +101,8 @@ class MotorRequests(Requests):
         if drives:
             self._share(motor, motor.max_effort)
         servos = self._servos(joint)
+        # A further servo of a shared motor leaves the velocity to the drive as well.
+        handle.shared = any(each.shared for each in servos)
         for servo in servos:
             servo.alone = len(servos) == 1 and not servo.shared
         task = self.schedule(0, before=handle.follow)

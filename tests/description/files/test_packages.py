@@ -225,6 +225,16 @@ def test_models(tmp_path, variable):
     assert found.resolve("model://cone", folder=True) == cone
 
 
+def test_model_with_the_name_of_a_package_that_contains_a_python_module(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "robot")
+    (own / "robot").mkdir()
+    (own / "robot" / "__init__.py").touch()
+    (own / "meshes").mkdir()
+    mesh = own / "meshes" / "base.stl"
+    mesh.touch()
+    assert packages(robot(own)).resolve("model://robot/meshes/base.stl") == mesh
+
+
 def test_models_beside_the_world(tmp_path):
     cone = tmp_path / "models" / "cone"
     cone.mkdir(parents=True)

@@ -82,12 +82,22 @@ class PackageSearch:
 
     def model(self, name: str) -> Path | None:
         """The folder of a model, or of a package with this name; None if it was not found."""
+        return next(self.models(name), None)
+
+    def models(self, name: str) -> Iterator[Path]:
+        """All folders of a model, and that of a package with this name, in search order.
+
+        Gazebo searches each of them for a file. The first may be a Python module, which is in the
+        package with its name.
+        """
         if not _is_plain(name):
-            return None
+            return
         for folder in self.model_folders():
             if is_dir(folder / name):
-                return folder / name
-        return self.package(name)
+                yield folder / name
+        package = self.package(name)
+        if package is not None:
+            yield package
 
     def model_folders(self) -> list[Path]:
         """The folders that are searched for Gazebo models, in order."""

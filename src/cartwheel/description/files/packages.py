@@ -325,6 +325,8 @@ class Packages:
         yield found / path
         if path:
             yield source_of(found / path)
+        if path and scheme == "model":
+            yield from (each / path for each in self._search.models(name))
 
     def _relative(self, path: str, origin: Origin | None) -> Iterator[Path]:
         if not path:

@@ -301,3 +301,21 @@ def test_parameters_among_those_of_the_manager_are_found(make, tmp_path):
     (refused,) = coded(world, running.CONTROLLER_NOT_STARTED)
     assert "left_wheel_names" in refused.message
     assert refused.hint.endswith("Move it to base: ros__parameters.")
+
+
+@pytest.mark.parametrize("managers", [1, 2])
+@pytest.mark.parametrize("first", ["drive", "managers"])
+def test_controller_managers_without_commands_leave_effort_joints_to_a_drive(
+    make, tmp_path, managers, first
+):
+    """In Gazebo, each adds an effort of 0 to that of the drive."""
+    drive = f"""<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">
+      <leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>
+      <commandTopic>base/cmd_vel</commandTopic><wheelSeparation>{TRACK}</wheelSeparation>
+      <wheelDiameter>{2 * RADIUS}</wheelDiameter></plugin></gazebo>"""
+    effort = ROS1.replace("VelocityJoint", "EffortJoint")
+    effort += ROS1[ROS1.index("<gazebo>") :] * (managers - 1)
+    parts = (drive, effort) if first == "drive" else (effort, drive)
+    made = Drive(make, tmp_path, cart("".join(parts)), {})
+    made.go(2.0, linear=0.5)
+    assert made.model.pose.x == pytest.approx(1.0, rel=0.05)
