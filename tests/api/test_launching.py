@@ -124,6 +124,19 @@ def test_another_world_and_arguments(package: Path) -> None:
         cw.launch(file, {"aerna": "mud"})
 
 
+def test_a_published_model_that_the_world_contains_is_not_spawned(package: Path) -> None:
+    file = package / "launch/show.launch"
+    file.write_text("\n".join(line for line in TWO.split("\n") if "-param" not in line and
+                              "spawn_model" not in line))  # fmt: skip
+    with cw.launch(file) as world:
+        assert world.models == ("pillar", "cart")
+    (package / "urdf/cart.xacro").write_text(CART.replace('name="cart"', 'name="pillar"'))
+    with cw.launch(file) as world:
+        assert world.models == ("pillar",)
+    with cw.launch(file, world="empty") as world:
+        assert world.models == ("ground_plane", "pillar")
+
+
 def test_errors_of_a_launch_file(package: Path) -> None:
     with raises(MODEL_NAME_TAKEN):
         cw.launch(package / "launch/twins.launch")

@@ -296,7 +296,7 @@ def test_values_of_a_wrong_kind(make, rosbots):
     ):
         with raises(VALUE_INVALID):
             call()
-    for name in ("", "a::b"):
+    for name in ("", "a::b", "\ud800"):
         with raises(MODEL_NAME_INVALID):
             world.spawn(rosbots, name=name)
     assert world.models == ("ground_plane",)

@@ -2,6 +2,8 @@
 
 import pytest
 
+from cartwheel.codes.command import OPTIONS_CONFLICT
+
 BOX = """<robot name="box"><link name="link"><inertial><mass value="2"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>"""
@@ -44,6 +46,19 @@ def test_options_replace_what_a_launch_file_states(package):
     done = package("run", "sim.launch", *words, status=2)
     assert "the launch file names no description that exists" in done.stderr
     assert "CW107" in done.stderr
+
+
+def test_a_model_that_the_world_contains_has_no_options(package):
+    (package.folder / "sim.launch").write_text("""<launch>
+      <include file="empty_world.launch"><arg name="world_name" value="box.sdf"/></include>
+      <param name="robot_description" textfile="$(find boxes)/box.urdf"/></launch>""")
+    model = "<model name='box'><static>1</static><link name='l'/></model>"
+    (package.folder / "box.sdf").write_text(
+        f"<sdf version='1.6'><world name='w'>{model}</world></sdf>"
+    )
+    words = ("run", "sim.launch", "--headless", "--for", "0.1", "--speed", "max")
+    assert "world   w with box" in package(*words).stdout
+    assert f"[{OPTIONS_CONFLICT}]" in package(*words, "-x", "1", status=2).stderr
 
 
 def test_other_commands_say_that_it_is_a_launch_file(package):

@@ -74,9 +74,16 @@ def open_launch(
     if world is not None:
         found = [each for each in found if each.values.get("what") != "world"]
     opened = load_world(world, package_path=package_path) if world else None
+    opened = opened or _world(start, package_path, found)
+    names = {each.name for each in opened.models}
+    models = [(each, _start(each, package_path)) for each in start.models]
     return Launched(
-        world=opened or _world(start, package_path, found),
-        models=tuple(_start(each, package_path) for each in start.models),
+        world=opened,
+        models=tuple(
+            model
+            for each, model in models
+            if not (each.is_shown and model.description.name in names)
+        ),
         file=file,
         diagnostics=tuple(found),
     )

@@ -18,7 +18,10 @@ STEP_COUNT_INVALID = Code(
     "CW605", "step-count-invalid", "error", "the number of simulation steps is out of range"
 )
 MODEL_NAME_INVALID = Code(
-    "CW606", "model-name-invalid", "error", "the name of a model is empty or contains ::"
+    "CW606",
+    "model-name-invalid",
+    "error",
+    "the name of a model is empty or contains ::",
 )
 MODEL_NAME_TAKEN = Code(
     "CW607", "model-name-taken", "error", "a model with this name is already in the world"

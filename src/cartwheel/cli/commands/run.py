@@ -139,6 +139,17 @@ def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterato
             yield each.origin.file
 
 
+def _refuse_place(options: Options, reason: str) -> None:
+    """Raises an error if a robot's name or pose is stated, but there is no robot to spawn."""
+    if options.place or options.model:
+        raise CartwheelError(
+            f"{reason}, so options for the name and pose of a robot do not apply",
+            code=OPTIONS_CONFLICT,
+            hint="Pass a robot file, and the world with --world.",
+            values={"file": str(options.file)},
+        )
+
+
 def _read(options: Options) -> tuple[Launched, tuple[str, ...]]:
     """The world, the models, and ROS's remappings among the arguments."""
     from cartwheel.assembly.launched import Launched, Start, open_launch
@@ -152,6 +163,9 @@ def _read(options: Options) -> tuple[Launched, tuple[str, ...]]:
     automatic = options.controllers == (Path("auto"),)
     if is_launch_file(Path(file)):
         launched = open_launch(Path(file), values, world=options.world, package_path=path)
+        if not launched.models:
+            _refuse_place(options, f'the world of "{file}" contains its model')
+            return launched, ()
         first, *others = launched.models
         first = replace(first, name=options.model or first.name)
         if options.place:
@@ -169,13 +183,7 @@ def _read(options: Options) -> tuple[Launched, tuple[str, ...]]:
                 code=OPTIONS_CONFLICT,
                 values={"file": str(file), "world": str(named)},
             )
-        if options.place or options.model:
-            raise CartwheelError(
-                f'"{file}" is a world, so options for the name and pose of a robot do not apply',
-                code=OPTIONS_CONFLICT,
-                hint="Pass a robot file, and the world with --world.",
-                values={"file": str(file)},
-            )
+        _refuse_place(options, f'"{file}" is a world')
         remappings: tuple[str, ...] = ()
         if options.plan.ros1 is not None and values:
             # Without a xacro, they cannot be xacro arguments.

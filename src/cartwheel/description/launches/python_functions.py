@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+
 JOINS = frozenset({"join", "joinpath", "PathJoinSubstitution"})
 """Functions that join the parts of a path."""
 SHARES = frozenset(
@@ -56,3 +58,12 @@ PASSED = frozenset(
     }
 )
 """Methods whose value is that of the object; ``FindPackageShare(…).find(…)`` is the folder, too."""
+
+
+def is_module(function: ast.expr, name: str) -> bool:
+    """Whether a function is called as one of a module."""
+    return (
+        isinstance(function, ast.Attribute)
+        and isinstance(function.value, ast.Name)
+        and function.value.id == name
+    )

@@ -10,6 +10,7 @@ from typing import Any
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.effort import LONGEST
 from cartwheel.description.launches.evaluation import evaluated
+from cartwheel.description.launches.python_conditions import CONDITIONS, holds
 from cartwheel.description.launches.python_functions import (
     FIRST,
     JOINS,
@@ -17,6 +18,7 @@ from cartwheel.description.launches.python_functions import (
     PASSED,
     SAME,
     SHARES,
+    is_module,
 )
 from cartwheel.description.launches.python_values import (
     NOTHING,
@@ -30,21 +32,28 @@ from cartwheel.description.launches.python_values import (
     path_of,
     text,
 )
-from cartwheel.description.launches.spawning import split
-from cartwheel.description.launches.use import Facts
+from cartwheel.description.launches.spawning import resolved, split
+from cartwheel.description.launches.use import SUFFIXES, Facts
 
 _MOST_TURNS = 500
 """Maximum number of times that the bodies of all loops of a file are evaluated."""
 
 
 class _Description:
-    """The text that xacro produces from a file."""
+    """The text that xacro produces from a file.
+
+    Args:
+        number: Its number in `Facts.descriptions`.
+    """
+
+    def __init__(self, number: int | None) -> None:
+        self.number = number
 
 
 def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
     """Adds the contents of a launch file to `facts`."""
     try:
-        content = read_regular_text(path)
+        content = read_regular_text(path).removeprefix("\ufeff")
         facts.effort.spend(len(content))
         tree = ast.parse(content)
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
@@ -82,7 +91,7 @@ class _Reader:
         self._names: dict[str, Any] = {"__file__": str(path)}
 
     def block(self, statements: Iterable[ast.stmt]) -> None:
-        """Evaluates statements in their order; of branches, all.
+        """Evaluates statements in their order; of branches, all that may be executed.
 
         The body of a loop is evaluated for each value, or once if the values are unknown.
         """
@@ -105,6 +114,10 @@ class _Reader:
                     self._assign(each.target, item)
                     self.block(each.body)
                 self.block(each.orelse)
+            elif isinstance(each, ast.If):
+                holds = self._holds(each.test)
+                self.block([] if holds is False else each.body)
+                self.block([] if holds is True else each.orelse)
             elif isinstance(each, ast.With):
                 for item in each.items:
                     if item.optional_vars is not None:
@@ -212,12 +225,25 @@ class _Reader:
         if isinstance(node.func, ast.Attribute):
             name = node.func.attr
             holder = self.value(node.func.value)
+        conditions = [each.value for each in node.keywords if each.arg == "condition"]
+        if any(self.value(each) is False for each in conditions):
+            return NOTHING  # the action is not executed, nor are those in it
+        space = self._facts.namespace
         places = [
             self.value(each.value if isinstance(each, ast.Starred) else each) for each in node.args
         ]
-        words = {each.arg: self.value(each.value) for each in node.keywords if each.arg}
+        words = {
+            each.arg: self.value(each.value)
+            for each in node.keywords
+            if each.arg and each.arg != "condition"
+        }
         if not named:
             return NOTHING
+        if name == "GroupAction":
+            self._facts.namespace = space
+            return NOTHING
+        if name in CONDITIONS:
+            return holds(name, [*places, *words.values()])
         first = places[0] if places else next((words[w] for w in FIRST if w in words), NOTHING)
         if name in JOINS:
             parts = [*([] if isinstance(holder, Unknown) else [holder]), *places]
@@ -238,15 +264,14 @@ class _Reader:
         if name in ("process_file", "process", "process_doc"):
             # For process_doc, the document is the text of the file that xacro.parse has read.
             return self._processed(text(first), words.get("mappings", {}))
-        if name in ("safe_load", "full_load", "load") and _is_module(node.func, "yaml"):
+        if name in ("safe_load", "full_load", "load") and is_module(node.func, "yaml"):
             # A file that was opened is its path.
             return loaded(text(first), self._facts.effort)
         if name in OUTPUTS:
             said = first if isinstance(first, list) else [first]
-            self._facts.describe(" ".join(map(joined, said)))
-            return _Description()
+            return _Description(self._facts.describe(" ".join(map(joined, said))))
         if name == "parse":
-            return first if _is_module(node.func, "xacro") else NOTHING
+            return first if is_module(node.func, "xacro") else NOTHING
         maker = _ACTIONS.get(name)
         return NOTHING if maker is None else maker(self, first, places, words)
 
@@ -256,8 +281,7 @@ class _Reader:
             if isinstance(mappings, dict)
             else {}
         )
-        self._facts.add(Path(file), arguments)
-        return _Description()
+        return _Description(self._facts.add(Path(file), arguments))
 
     def configuration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a launch argument."""
@@ -289,8 +313,7 @@ class _Reader:
 
     def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds the description in a command."""
-        self._facts.describe(joined(words.get("command", first)))
-        return NOTHING
+        return _Description(self._facts.describe(joined(words.get("command", first))))
 
     def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a Python expression, which consists of substitutions."""
@@ -309,23 +332,48 @@ class _Reader:
             if isinstance(passed, dict)
             else {}
         )
-        self._facts.include(joined(source), arguments, self._depth)
+        defaults = {name: joined(value) for name, value in self.defaults.items()}
+        inherited = {**defaults, **self._given}
+        self._facts.include(joined(source), arguments, self._depth, inherited)
+        return NOTHING
+
+    def push(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Enters a namespace, until the end of the group."""
+        stated = joined(words.get("namespace", first))
+        self._facts.namespace = resolved(self._facts.namespace, stated)
         return NOTHING
 
     def node(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
         """Adds what a node starts."""
         arguments = words.get("arguments", [])
-        texts = [joined(each) for each in arguments] if isinstance(arguments, list) else []
+        if not isinstance(arguments, list):
+            arguments = []
+        texts = [joined(each) for each in arguments]
         if len(texts) == 1 and " " in texts[0]:
             texts = split(texts[0])
         package = text(words.get("package", ""))
         executable = text(words.get("executable", words.get("node_executable", "")))
-        self._facts.node(package, executable, texts)
-        if package == "controller_manager" and isinstance(words.get("parameters"), list):
-            for each in words["parameters"]:
-                if isinstance(each, str | list):
-                    self._facts.parameters(joined(each))
+        space = resolved(self._facts.namespace, joined(words.get("namespace", "")))
+        described = [each for each in arguments if isinstance(each, _Description)]
+        self._facts.node(
+            package, executable, texts, space, described[0].number if described else None
+        )
+        parameters = words.get("parameters")
+        for each in parameters if isinstance(parameters, list) else []:
+            if isinstance(each, dict):
+                self._publish(space, each)
+            elif package == "controller_manager" and isinstance(each, str | list):
+                self._facts.parameters(joined(each))
         return NOTHING
+
+    def _publish(self, space: str, parameters: Mapping[str, Any]) -> None:
+        """Stores the description that a node has as a parameter and publishes."""
+        value = parameters.get("robot_description")
+        number = value.number if isinstance(value, _Description) else None
+        if isinstance(value, str) and value.endswith(SUFFIXES):
+            # The text of a file that was opened is its path.
+            number = self._facts.add(Path(value), {})
+        self._facts.store_topic(space, number)
 
     def process(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds what a command starts."""
@@ -336,15 +384,6 @@ class _Reader:
         return NOTHING
 
 
-def _is_module(function: ast.expr, name: str) -> bool:
-    """Whether a function is called as one of a module."""
-    return (
-        isinstance(function, ast.Attribute)
-        and isinstance(function.value, ast.Name)
-        and function.value.id == name
-    )
-
-
 _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]] = {
     "Command": _Reader.command,
     "DeclareLaunchArgument": _Reader.declaration,
@@ -353,6 +392,8 @@ _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]]
     "IncludeLaunchDescription": _Reader.inclusion,
     "LaunchConfiguration": _Reader.configuration,
     "Node": _Reader.node,
+    "PushRosNamespace": _Reader.push,
+    "PushROSNamespace": _Reader.push,
     "PythonExpression": _Reader.expression,
     "SetLaunchConfiguration": _Reader.setting,
 }

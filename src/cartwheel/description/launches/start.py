@@ -20,6 +20,8 @@ from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.similar_names import meant, suggestion
 
 _ENDS = (".launch", ".launch.xml", ".py")
+_PARTS = {"place": "a part of the pose", "name": "the name", "namespace": "the namespace"}
+"""What may be unknown of a model."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,6 +33,8 @@ class LaunchedModel:
     """The arguments of the description, and the controllers that the launch file starts."""
     spawn: Spawn
     """Its name and place."""
+    is_shown: bool = False
+    """Whether it is only published, and not spawned. The world may contain it."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -116,8 +120,9 @@ def _unknown(
             "are used",
             what="arguments",
         )
-    if any(each.spawn.unknown for each in models):
-        yield _lost(file, "a part of the pose of a model is unknown", what="place")
+    for what, text in _PARTS.items():
+        if any(what in each.spawn.unknown for each in models):
+            yield _lost(file, f"{text} of a model is unknown", what=what)
     used = [each.spawn for each in models]
     for spawn in facts.spawns:
         if spawn not in used:
@@ -141,15 +146,16 @@ def _lost(file: Path, text: str, hint: str = "", **values: str) -> Diagnostic:
 
 def _models(facts: Facts, uses: Sequence[LaunchUse]) -> list[LaunchedModel]:
     """The spawned models; without any, the model that is only shown."""
-    files = {each.file for each in facts.spawns}
-    published = [each for each in uses if each.description not in files] or list(uses)
+    own = {each.described for each in facts.spawns}
+    others = [number for number in range(len(uses)) if number not in own] or [*range(len(uses))]
     found = []
-    for spawn in facts.spawns or [Spawn(file=None, place={})]:
-        fitting = [each for each in uses if each.description == spawn.file]
-        if spawn.file is None:
-            fitting = published
-        if fitting and (use := fitting[0]).description is not None:
-            found.append(LaunchedModel(description=use.description, use=use, spawn=spawn))
+    for spawn in facts.spawns or [Spawn()]:
+        number = spawn.described
+        if number is None and spawn.file is None and others:
+            number = facts.published.get(spawn.source, others[0])
+        if number is not None and (file := (use := uses[number]).description) is not None:
+            shown = not facts.spawns
+            found.append(LaunchedModel(description=file, use=use, spawn=spawn, is_shown=shown))
     return found
 
 
@@ -173,7 +179,7 @@ def _failure(file: Path, reason: str, named: str = "") -> DescriptionError:
         return error
     if file.suffix == ".py":
         try:
-            ast.parse(read_regular_text(file))
+            ast.parse(read_regular_text(file).removeprefix("\ufeff"))
         except (OSError, SyntaxError, ValueError, RecursionError, MemoryError) as error:
             line = getattr(error, "lineno", None) or line
             reason = f"the file is not Python: {getattr(error, 'msg', error)}"

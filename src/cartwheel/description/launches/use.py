@@ -6,8 +6,9 @@ import os
 import re
 import shlex
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 
 from cartwheel import yaml_text
 from cartwheel.description.files.package_folders import (
@@ -19,6 +20,7 @@ from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
     Spawn,
+    resolved,
     spawn_of,
     split,
     world_in,
@@ -109,6 +111,10 @@ class Facts:
     effort: Effort
     """The remaining effort."""
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
+    published: dict[str, int] = field(default_factory=dict)
+    """The number of a description, by the parameter or topic that contains it."""
+    namespace: str = ""
+    """The namespace of the group that is being read."""
     yamls: list[Path] = field(default_factory=list)
     spawned: list[str] = field(default_factory=list)
     simulated: bool = False
@@ -129,8 +135,12 @@ class Facts:
         folder = folder or self.home
         return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
 
-    def describe(self, text: str) -> None:
-        """Adds the description in a file name, or in a command such as ``xacro FILE a:=b``."""
+    def describe(self, text: str) -> int | None:
+        """Adds the description in a file name, or in a command such as ``xacro FILE a:=b``.
+
+        Returns:
+            As for `add`.
+        """
         if text.startswith("xacro/"):
             # Some launch files forget the space, as in ["xacro", file].
             text = "xacro " + text.removeprefix("xacro")
@@ -138,7 +148,7 @@ class Facts:
         try:
             words = shlex.split(text)
         except ValueError:
-            return
+            return None
         arguments: dict[str, str] = {}
         file: Path | None = None
         skip = False
@@ -154,17 +164,21 @@ class Facts:
                 arguments[name] = UNKNOWN if ":=" in value else value
             elif file is None and word.endswith(SUFFIXES):
                 file = Path(word)
-        self.add(file, arguments)
+        return self.add(file, arguments)
 
-    def add(self, file: Path | None, arguments: Mapping[str, str]) -> None:
+    def add(self, file: Path | None, arguments: Mapping[str, str]) -> int | None:
         """Adds a description with arguments, if the file exists.
 
         If a part of the file's name is unknown, as in ``robot_$(env MODEL).xacro``, it may be any
         of the files with such a name.
+
+        Returns:
+            Its number in `descriptions`, that of the first if there are several; None without one.
         """
         self.effort.spend(_LOOK)
         if file is None or UNKNOWN in str(file.parent):
-            return
+            return None
+        number = len(self.descriptions)
         if UNKNOWN not in file.name:
             file = self._here(file)
             if is_file(file):
@@ -172,6 +186,17 @@ class Facts:
         elif re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")):
             known = {**arguments, "": UNKNOWN}
             self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
+        return number if len(self.descriptions) > number else None
+
+    def store_parameter(self, name: str, number: int | None) -> None:
+        """Stores which description a parameter contains; the last one counts."""
+        if number is not None:
+            self.published[resolved(self.namespace, name)] = number
+
+    def store_topic(self, space: str, number: int | None) -> None:
+        """Stores which description a robot_state_publisher publishes; the first one counts."""
+        if number is not None:
+            self.published.setdefault(resolved(space, "robot_description"), number)
 
     def _here(self, file: Path) -> Path:
         """A file where it is in the sources, although the launch file names another place.
@@ -200,15 +225,30 @@ class Facts:
             found += [Path(root, name)] if name in names else []
         return found[0] if len(found) == 1 else None
 
-    def node(self, package: str, executable: str, words: list[str]) -> None:
-        """Adds what a node with these arguments starts: models or controllers."""
+    def node(
+        self,
+        package: str,
+        executable: str,
+        words: list[str],
+        space: str,
+        described: int | None = None,
+    ) -> None:
+        """Adds what a node starts: models or controllers.
+
+        Args:
+            package: Its package.
+            executable: Its program.
+            words: Its arguments.
+            space: Its namespace.
+            described: The number of the description whose text is one of its arguments.
+        """
         if package in ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz"):
             self.simulated |= executable in _SPAWNERS
             if executable in MODEL_SPAWNERS:
-                spawn = spawn_of(words)
-                self.spawns.append(spawn)
+                spawn = spawn_of(executable, words, space)
                 if spawn.file is not None:
-                    self.add(spawn.file, {})
+                    described = self.add(spawn.file, {})
+                self.spawns.append(replace(spawn, described=described))
             else:
                 self._begin(world_in(words))
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
@@ -252,8 +292,21 @@ class Facts:
                 path = Path(f"{name}={path}")
             self.yamls.append(path)
 
-    def include(self, text: str, arguments: Mapping[str, str], depth: int) -> None:
-        """Reads an included launch file if it exists."""
+    def include(
+        self,
+        text: str,
+        arguments: Mapping[str, str],
+        depth: int,
+        inherited: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
+        """Reads an included launch file if it exists.
+
+        Args:
+            text: Its name.
+            arguments: The arguments that it receives.
+            depth: The number of launch files that include the including one.
+            inherited: Further arguments, which it inherits.
+        """
         if _WORLD.search(text.rsplit("/", 1)[-1]):
             self.simulated = True
             for name in ("world_name", "world"):
@@ -264,4 +317,5 @@ class Facts:
             return
         path = Path(text.strip())
         if is_file(path):
-            self.read(path, arguments, self, depth + 1)
+            self.effort.spend(len(inherited))
+            self.read(path, {**inherited, **arguments}, self, depth + 1)

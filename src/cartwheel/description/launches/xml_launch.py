@@ -13,7 +13,7 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.expressions import Function
 from cartwheel.description.launches.effort import UNKNOWN, limited
 from cartwheel.description.launches.evaluation import evaluated
-from cartwheel.description.launches.spawning import split
+from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import Facts
 
 _CALL = re.compile(r"\$\(\s*+([\w-]++)\s*+([^()]*+)\)")
@@ -54,7 +54,9 @@ class _Reader:
         if tag in ("arg", "let"):
             self._argument(node)
         elif tag == "group":
-            self.group(node)
+            self._within(node)
+        elif tag in ("push_ros_namespace", "push-ros-namespace"):
+            facts.namespace = self._space(node)
         elif tag == "include":
             given = {
                 child.attributes.get("name", ""): self._value(child, "value")
@@ -64,7 +66,12 @@ class _Reader:
             if node.attributes.get("pass_all_args") == "true":
                 self._facts.effort.spend(len(self._arguments))
                 given = {**self._arguments, **given}
-            facts.include(self._value(node, "file"), given, self._depth)
+            file = self._value(node, "file")
+            # In ROS 2, files inherit the arguments of those that include them.
+            is_ros2 = file.endswith(".py") or "find-pkg-share" in node.attributes.get("file", "")
+            space, facts.namespace = facts.namespace, self._space(node)
+            facts.include(file, given, self._depth, self._arguments if is_ros2 else {})
+            facts.namespace = space
         elif tag == "param":
             self._parameter(node)
         elif tag == "rosparam":
@@ -73,9 +80,23 @@ class _Reader:
         elif tag == "node":
             kind = "exec" if "exec" in node.attributes else "type"
             facts.node(
-                self._value(node, "pkg"), self._value(node, kind), split(self._value(node, "args"))
+                self._value(node, "pkg"),
+                self._value(node, kind),
+                split(self._value(node, "args")),
+                self._space(node),
             )
-            self.group(node)
+            self._within(node)
+
+    def _within(self, node: Node) -> None:
+        """Reads the elements of an element in its namespace."""
+        space, self._facts.namespace = self._facts.namespace, self._space(node)
+        self.group(node)
+        self._facts.namespace = space
+
+    def _space(self, node: Node) -> str:
+        """The namespace of an element."""
+        stated = self._value(node, "ns") or self._value(node, "namespace")
+        return resolved(self._facts.namespace, stated)
 
     def _argument(self, node: Node) -> None:
         name = node.attributes.get("name", "")
@@ -92,14 +113,13 @@ class _Reader:
         facts = self._facts
         if "from" in node.attributes:
             facts.parameters(self._value(node, "from"))
-        if not node.attributes.get("name", "").endswith("description"):
+        parameter = self._value(node, "name")
+        if not parameter.endswith("description"):
             return
-        for name in ("command", "textfile"):
-            if name in node.attributes:
-                facts.describe(self._value(node, name))
-        value = node.attributes.get("value", "")
-        if "command" in value:
-            facts.describe(self._value(node, "value"))
+        for name in ("command", "textfile", "value"):
+            value = node.attributes.get(name, "")
+            if value and (name != "value" or "command" in value):
+                facts.store_parameter(parameter, facts.describe(self._value(node, name)))
 
     def _holds(self, node: Node) -> bool:
         """Whether the conditions of an element hold. An unknown condition holds."""

@@ -20,11 +20,12 @@ def check_model_name(name: str) -> None:
     """Checks the name of a model.
 
     Raises:
-        WorldError: It is empty or contains "::".
+        WorldError: It is empty, or contains "::" or a surrogate, which is half a character.
     """
-    if not name or "::" in name:
+    shown = name.encode(errors="backslashreplace").decode()
+    if not name or "::" in name or shown != name:
         raise WorldError(
-            f'the name of a model must not be empty or contain "::" (got "{name}")',
+            f'the name of a model must not be empty or contain "::" or surrogates (got "{shown}")',
             code=world_codes.MODEL_NAME_INVALID,
-            values={"name": name},
+            values={"name": shown},
         )
