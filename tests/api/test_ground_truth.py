@@ -325,6 +325,8 @@ def test_the_order_of_two_models(resting):
         np.testing.assert_array_equal(np.negative(one.normal), two.normal)
         assert one.models == two.models[::-1]
     assert resting.contacts("box") == resting.contacts(box) == box.link("link").contacts() == up
+    assert box.link("link").contacts("ground_plane") == up
+    assert box.link("link").contacts(resting.model("ground_plane")) == up
     assert resting.contacts("box::link") == up
     assert len(resting.contacts()) == 4
     assert resting.contacts(between=("box", "box")) == ()

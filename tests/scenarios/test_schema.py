@@ -35,6 +35,7 @@ MISTAKES = [
     ("duration: .nan\nexpect: [{moves: a}]\n", 1, {}),
     ("seed: true\nexpect: [{moves: a}]\n", 1, {}),
     ("expect:\n  - push: a\n", 2, {}),
+    ("parameters:\n  v: {from: 0, to: 1}\nexpect: [{moves: a}]\n", 2, {"missing": "count"}),
 ]
 
 

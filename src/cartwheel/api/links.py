@@ -11,6 +11,7 @@ from cartwheel.geometry import Pose
 from cartwheel.simulation.limits import duration_ns
 
 if TYPE_CHECKING:
+    from cartwheel.api.model import Model
     from cartwheel.api.surroundings.contacts import Contact
     from cartwheel.api.world import World
     from cartwheel.simulation import Simulation
@@ -210,6 +211,13 @@ class Link(LinkProperties):
         simulation.truth.link(self.model, self.name)
         return self.model, self.name
 
-    def contacts(self) -> tuple[Contact, ...]:
-        """All contacts of the link, with the link as the first one; see `World.contacts`."""
-        return self._world.contacts(self)
+    def contacts(self, other: str | Model | Link | None = None) -> tuple[Contact, ...]:
+        """The contacts of the link, with the link as the first one; see `World.contacts`.
+
+        Args:
+            other: Another model or link, by name or as an object; None for all.
+
+        Raises:
+            UnknownNameError: The other model or link does not exist.
+        """
+        return self._world.contacts(self if other is None else (self, other))

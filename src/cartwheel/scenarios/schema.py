@@ -113,6 +113,14 @@ def _check_any(document: Document, rules: list[dict[str, Any]], value: Any, key:
     if isinstance(value, dict):
         chosen = [each for each in fitting if all(name in value for name in each["required"])]
         if not chosen:
+            begun = next((each for each in fitting if {*each["required"]} & {*value}), None)
+            if begun is not None:
+                missing = [name for name in begun["required"] if name not in value]
+                raise document.error(
+                    key,
+                    f'{_subject(key)} also requires the key "{missing[0]}"',
+                    values={"missing": missing[0]},
+                )
             names = list(dict.fromkeys(name for each in fitting for name in each["required"]))
             ways = list(dict.fromkeys(" and ".join(each["required"]) for each in fitting))
             close = next(
