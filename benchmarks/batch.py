@@ -13,7 +13,7 @@ from benchmarks.figure import Effort, Figure, paired
 from benchmarks.published import command_topic, with_laser
 from cartwheel.batch import Batch, Observations
 
-_WORLDS = 8
+_WORLDS, _MANY = 8, 32
 _PERIOD = 0.1
 """s."""
 _SPEED, _TURN = 0.2, 0.3
@@ -48,15 +48,17 @@ def figures(effort: Effort) -> Iterator[Figure]:
             group=group, name=name, value=1 / found[0], unit="times as fast", goal=goal,
             better="more", note=f"one thread, CPU time; {found[1] * 1e6:.0f} us per period alone",
         )  # fmt: skip
-    with (
-        Batch(built, _WORLDS, act=act, obs=poses, period=_PERIOD, workers=0) as here,
-        Batch(built, _WORLDS, act=act, obs=poses, period=_PERIOD, workers=1) as batch,
-    ):
-        found = _measured(here, batch, effort, wall=True)
-    yield Figure(
-        group=group, name="poses observed, two processes", value=1 / found[0],
-        unit="times as fast", goal=1.7, better="more", note="wall time; requires two idle cores",
-    )  # fmt: skip
+    for count in (_WORLDS, _MANY):
+        with (
+            Batch(built, count, act=act, obs=poses, period=_PERIOD, workers=0) as here,
+            Batch(built, count, act=act, obs=poses, period=_PERIOD, workers=1) as batch,
+        ):
+            found = _measured(here, batch, effort, wall=True)
+        yield Figure(
+            group=group, name=f"poses of {count} robots observed, two processes",
+            value=1 / found[0], unit="times as fast", goal=1.7, better="more",
+            note="wall time; requires two idle cores",
+        )  # fmt: skip
 
 
 def _measured(here: Batch, batch: Batch, effort: Effort, *, wall: bool) -> tuple[float, float]:
