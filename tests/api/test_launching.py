@@ -60,6 +60,17 @@ good:
 other:
   ros__parameters: {joints: [slide]}
 """
+GZ = """<robot name="gz"><link name="base"><inertial><mass value="2"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<gazebo><plugin filename="gz-sim-odometry-publisher-system"
+name="gz::sim::systems::OdometryPublisher"/></gazebo></robot>"""
+BRIDGE = """
+- ros_topic_name: /robot/odom
+  gz_topic_name: /model/gz/odometry
+  ros_type_name: nav_msgs/msg/Odometry
+  gz_type_name: gz.msgs.Odometry
+  direction: GZ_TO_ROS
+"""
 STARTER = """
 def generate_launch_description():
     share = get_package_share_directory("carts")
@@ -108,6 +119,30 @@ def test_the_launch_file_starts_the_controllers_that_it_names(package: Path) -> 
         world.run(1.0)
         assert world.model("slider").joint("slide") == pytest.approx(0.5, abs=1e-3)
         assert "/other/commands" not in {each.name for each in world.session.graph.topics()}
+
+
+@pytest.mark.parametrize(
+    "bridge",
+    [
+        'RosGzBridge(bridge_name="b", config_file=CONFIG)',
+        'Node(package="ros_gz_bridge", executable="parameter_bridge",'
+        ' arguments=["--ros-args", "-p", ["config_file:=", CONFIG]])',
+        'Node(package="ros_gz_bridge", executable="bridge_node",'
+        ' parameters=[{"config_file": CONFIG}])',
+    ],
+)
+def test_topics_have_the_names_that_the_bridge_of_a_launch_file_gives(
+    package: Path, bridge: str
+) -> None:
+    (package / "config/bridge.yaml").write_text(BRIDGE)
+    place = 'os.path.join(get_package_share_directory("carts"), "config", "bridge.yaml")'
+    text = STARTER.replace("    return [", f"    {bridge.replace('CONFIG', place)}\n    return [")
+    text = text.replace("slider.urdf", "gz.urdf")
+    (package / "urdf/gz.urdf").write_text(GZ)
+    (package / "launch/gz.launch.py").write_text(text)
+    with cw.launch(package / "launch/gz.launch.py") as world:
+        topics = {each.name for each in world.session.graph.topics()}
+    assert "/robot/odom" in topics and "/model/gz/odometry" not in topics
 
 
 def test_another_world_and_arguments(package: Path) -> None:

@@ -21,7 +21,8 @@ def launch(
     """Makes the world of a launch file with the robots that it spawns and their controllers.
 
     The launch file is read, but not executed, and ROS is not needed. Its other nodes are not
-    started. What only its execution determines is reported (CW164).
+    started. The configuration files of its ros_gz_bridge rename topics as `World`'s ``bridge``.
+    What only its execution determines is reported (CW164).
 
     >>> import cartwheel as cw
     >>> world = cw.launch("bot/launch/sim.launch.py", {"camera": False})  # doctest: +SKIP
@@ -52,7 +53,8 @@ def launch(
         package_path=folders,
     )
     refuse_unknown_arguments(launched.diagnostics)
-    made = World(launched.world, package_path=folders, **options)
+    bridge = [*paths(options.pop("bridge", ()), "bridge"), *launched.bridges]
+    made = World(launched.world, package_path=folders, bridge=bridge, **options)
     try:
         with made._used(change=True):
             spawn_all(made.session, launched, folders)

@@ -44,6 +44,8 @@ class Launched:
     world: WorldDescription
     models: tuple[Start, ...] = ()
     """The models to spawn in it."""
+    bridges: tuple[Path, ...] = ()
+    """Configuration files of ros_gz_bridge."""
     file: Path | None = None
     """The launch file, if there is one."""
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -84,6 +86,7 @@ def open_launch(
             for each, model in models
             if not (each.is_shown and model.description.name in names)
         ),
+        bridges=start.bridges,
         file=file,
         diagnostics=tuple(found),
     )

@@ -78,7 +78,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         seed=options.seed,
         strict=options.strict,
         lenient=not options.strict,
-        bridge=options.bridge,
+        bridge=(*options.bridge, *launched.bridges),
         plugins=options.plugins,
         allow_path=(
             *options.allow_path,

@@ -33,7 +33,7 @@ from cartwheel.description.launches.python_values import (
     text,
 )
 from cartwheel.description.launches.spawning import resolved, split
-from cartwheel.description.launches.use import SUFFIXES, Facts
+from cartwheel.description.launches.use import BRIDGES, SUFFIXES, Facts
 
 _MOST_TURNS = 500
 """Maximum number of times that the bodies of all loops of a file are evaluated."""
@@ -362,8 +362,15 @@ class _Reader:
         for each in parameters if isinstance(parameters, list) else []:
             if isinstance(each, dict):
                 self._publish(space, each)
+                if package in BRIDGES and "config_file" in each:
+                    self._facts.bridge(joined(each["config_file"]))
             elif package == "controller_manager" and isinstance(each, str | list):
                 self._facts.parameters(joined(each))
+        return NOTHING
+
+    def bridge(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
+        """Adds the configuration file of ros_gz_bridge's action."""
+        self._facts.bridge(joined(words.get("config_file", "")))
         return NOTHING
 
     def _publish(self, space: str, parameters: Mapping[str, Any]) -> None:
@@ -395,6 +402,7 @@ _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]]
     "PushRosNamespace": _Reader.push,
     "PushROSNamespace": _Reader.push,
     "PythonExpression": _Reader.expression,
+    "RosGzBridge": _Reader.bridge,
     "SetLaunchConfiguration": _Reader.setting,
 }
 """What the classes of launch and launch_ros mean."""

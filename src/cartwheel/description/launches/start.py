@@ -46,6 +46,8 @@ class LaunchStart:
     """At least one."""
     world: str
     """The world as the launch file states it; empty if it states none or an unknown one."""
+    bridges: tuple[Path, ...]
+    """Configuration files of ros_gz_bridge."""
     diagnostics: tuple[Diagnostic, ...]
     """Arguments without an effect, and what only the execution of the launch file determines."""
 
@@ -102,6 +104,7 @@ def read_launch(
         file=file,
         models=models,
         world="" if UNKNOWN in world else world,
+        bridges=tuple(facts.bridges),
         diagnostics=tuple(found),
     )
 

@@ -36,6 +36,8 @@ SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
 _SPAWNERS = frozenset(
     {"spawn_model", "spawn_entity.py", "create", "gzserver", "gzclient", "gz_sim", "gazebo"}
 )
+BRIDGES = frozenset({"ros_gz_bridge", "ros_ign_bridge"})
+"""Packages that bridge topics of gz-sim."""
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
@@ -121,6 +123,8 @@ class Facts:
     spawns: list[Spawn] = field(default_factory=list)
     world: str = ""
     """The world as it is stated; empty if none is."""
+    bridges: list[Path] = field(default_factory=list)
+    """Configuration files of ros_gz_bridge."""
     declared: set[str] = field(default_factory=set)
     """Names of the arguments of the launch file itself."""
     count: int = 0
@@ -251,8 +255,19 @@ class Facts:
                 self.spawns.append(replace(spawn, described=described))
             else:
                 self._begin(world_in(words))
+        if package in BRIDGES:
+            for word in words:
+                if word.startswith("config_file:="):
+                    self.bridge(word.removeprefix("config_file:="))
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
             self._spawn(words)
+
+    def bridge(self, text: str) -> None:
+        """Adds a configuration file of ros_gz_bridge if it exists."""
+        self.effort.spend(_LOOK)
+        path = Path(text.strip())
+        if UNKNOWN not in text and is_file(path) and path not in self.bridges:
+            self.bridges.append(path)
 
     def command(self, words: list[str]) -> None:
         """Adds what a command starts, such as ``gazebo arena.world``."""
