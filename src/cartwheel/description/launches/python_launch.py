@@ -22,6 +22,7 @@ from cartwheel.description.launches.python_functions import (
 )
 from cartwheel.description.launches.python_values import (
     NOTHING,
+    Description,
     Unknown,
     combined,
     concatenated,
@@ -37,17 +38,6 @@ from cartwheel.description.launches.use import BRIDGES, SUFFIXES, Facts
 
 _MOST_TURNS = 500
 """Maximum number of times that the bodies of all loops of a file are evaluated."""
-
-
-class _Description:
-    """The text that xacro produces from a file.
-
-    Args:
-        number: Its number in `Facts.descriptions`.
-    """
-
-    def __init__(self, number: int | None) -> None:
-        self.number = number
 
 
 def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
@@ -269,19 +259,19 @@ class _Reader:
             return loaded(text(first), self._facts.effort)
         if name in OUTPUTS:
             said = first if isinstance(first, list) else [first]
-            return _Description(self._facts.describe(" ".join(map(joined, said))))
+            return Description(self._facts.describe(" ".join(map(joined, said))))
         if name == "parse":
             return first if is_module(node.func, "xacro") else NOTHING
         maker = _ACTIONS.get(name)
         return NOTHING if maker is None else maker(self, first, places, words)
 
-    def _processed(self, file: str, mappings: Any) -> _Description:
+    def _processed(self, file: str, mappings: Any) -> Description:
         arguments = (
             {key: text(value) for key, value in mappings.items()}
             if isinstance(mappings, dict)
             else {}
         )
-        return _Description(self._facts.add(Path(file), arguments))
+        return Description(self._facts.add(Path(file), arguments))
 
     def configuration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a launch argument."""
@@ -313,7 +303,7 @@ class _Reader:
 
     def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds the description in a command."""
-        return _Description(self._facts.describe(joined(words.get("command", first))))
+        return Description(self._facts.describe(joined(words.get("command", first))))
 
     def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a Python expression, which consists of substitutions."""
@@ -354,7 +344,7 @@ class _Reader:
         package = text(words.get("package", ""))
         executable = text(words.get("executable", words.get("node_executable", "")))
         space = resolved(self._facts.namespace, joined(words.get("namespace", "")))
-        described = [each for each in arguments if isinstance(each, _Description)]
+        described = [each for each in arguments if isinstance(each, Description)]
         self._facts.node(
             package, executable, texts, space, described[0].number if described else None
         )
@@ -376,7 +366,7 @@ class _Reader:
     def _publish(self, space: str, parameters: Mapping[str, Any]) -> None:
         """Stores the description that a node has as a parameter and publishes."""
         value = parameters.get("robot_description")
-        number = value.number if isinstance(value, _Description) else None
+        number = value.number if isinstance(value, Description) else None
         if isinstance(value, str) and value.endswith(SUFFIXES):
             # The text of a file that was opened is its path.
             number = self._facts.add(Path(value), {})

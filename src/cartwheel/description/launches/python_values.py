@@ -16,6 +16,17 @@ class Unknown:
     """A value that cannot be determined."""
 
 
+class Description:
+    """The text that xacro produces from a file.
+
+    Args:
+        number: Its number in `Facts.descriptions`.
+    """
+
+    def __init__(self, number: int | None) -> None:
+        self.number = number
+
+
 NOTHING = Unknown()
 _LARGEST = 1e9
 _NUMBERS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
