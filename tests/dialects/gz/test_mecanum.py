@@ -4,6 +4,7 @@ import math
 import re
 
 import pytest
+from tests.coded import coded
 from tests.devices.drives.carts import (
     FOUR,
     cart_sdf,
@@ -11,6 +12,7 @@ from tests.devices.drives.carts import (
 )
 
 from cartwheel.codes import devices
+from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED
 
 MECANUM = """<plugin name="drive" filename="gz-sim-mecanum-drive-system">
   <front_left_joint>left_front_joint</front_left_joint>
@@ -85,3 +87,22 @@ def test_mecanum_wheels_speed_up_no_faster_than_they_may(make, cart, read):
     world.run(1.0)
     fast = read(world, "/model/cart/odometry", 0.02)[-1].twist.twist.linear.x
     assert fast == pytest.approx(0.4, abs=0.01)
+
+
+@pytest.mark.parametrize("motion", [(0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.5)])
+@pytest.mark.parametrize("aside", [False, True])
+def test_wheels_whose_axes_point_to_the_right_move_the_robot_backward(make, motion, aside):
+    """Each wheel rolls in the opposite direction, so the robot moves and turns in it."""
+    forward, sideways, turn = motion
+    text = cart_sdf(FOUR, MECANUM, mu=0.3).replace("<xyz>0 0 1</xyz>", "<xyz>0 0 -1</xyz>")
+    world = spawn(make, make.sdf(turned(text) if aside else text))
+    (warning,) = coded(world, WHEEL_AXIS_MISALIGNED)
+    assert warning.values["attribute"] == "backwards"
+    world.publish("/model/cart/cmd_vel", linear_x=forward, linear_y=sideways, angular_z=turn)
+    world.run(0.5)
+    start = world.model("cart").pose
+    world.run(2.0)
+    end = start.inverse() @ world.model("cart").pose
+    wanted = (sideways, -forward) if aside else (-forward, -sideways)
+    assert (end.x, end.y) == pytest.approx([2.0 * each for each in wanted], abs=0.02)
+    assert end.yaw == pytest.approx(-2.0 * turn, abs=0.03)

@@ -7,12 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from cartwheel.codes import robot
 from cartwheel.component import Scope
 from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
-from cartwheel.devices.drives.rollers import has_grip, has_rollers, rolling_direction
+from cartwheel.devices.drives.rollers import (
+    BACKWARD,
+    FORWARD,
+    Rolling,
+    has_grip,
+    has_rollers,
+    rolling,
+)
 from cartwheel.devices.elementwise import Number, cos, sin
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
@@ -89,8 +97,8 @@ class MecanumWheelsConfig:
     offset: Vec3 | None = None
     """Pose of the base frame, which the commands and the odometry describe, relative to the wheels'
     centre: x and y, m, and yaw, rad. None: both are equal."""
-    heading: float = 0.0
-    """Direction in which the wheels roll forward, relative to the x axis of the base, rad."""
+    rolling: Rolling = FORWARD
+    """How the wheels roll."""
     subtracts: Literal["rotations", "distances"] = "rotations"
     """What is subtracted to obtain the motion in a time step: the rotations of the wheels, or the
     distances that they rolled. The results differ only in rounding."""
@@ -183,7 +191,10 @@ class MecanumWheels:
     def push(self, forward: float, sideways: float, turn: float) -> None:
         """Pushes a robot without rollers at velocities in m/s and rad/s."""
         if self._servo is not None:
-            if heading := self._config.heading:
+            wheels = self._config.rolling
+            if wheels.backward:
+                forward, sideways, turn = -forward, -sideways, -turn
+            if heading := wheels.heading:
                 cos, sin = math.cos(heading), math.sin(heading)
                 forward, sideways = cos * forward - sin * sideways, sin * forward + cos * sideways
             self._servo.command((forward, sideways, None), (None, None, turn))
@@ -229,12 +240,16 @@ class MecanumDrive(Drive):
         ]
         servo = part.body_drive(origin=origin) if pushes else None
         self._reckoning = DeadReckoning()
-        heading = rolling_direction(
+        found = rolling(
             part.description,
             (*config.front_left, *config.back_left),
             (*config.front_right, *config.back_right),
         )
-        dimensions = replace(config.wheels, heading=heading)
+        if found.backward:
+            joint = config.front_left[0] if config.front_left else ""
+            values = {"joint": joint, "attribute": "backwards"}
+            self.warn(robot.WHEEL_AXIS_MISALIGNED, BACKWARD, values=values)
+        dimensions = replace(config.wheels, rolling=found)
         self._wheels = MecanumWheels(dimensions, wheels, servo, self._reckoning)
         self._period = 1 / config.drive.control_rate
         self._is_instant = all(each.is_instant for each in config.wheels.limits)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -60,13 +61,30 @@ def has_grip(description: RobotDescription, joints: Collection[str]) -> bool:
     )
 
 
-def rolling_direction(
-    description: RobotDescription, left: Sequence[str], right: Sequence[str]
-) -> float:
-    """The direction in which wheels with a positive speed roll, as an angle to the x axis in rad.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Rolling:
+    """How wheels with positive speeds roll."""
 
-    It is 0 for a robot that faces along x, and if the wheels' axes differ from each other or from
-    the direction of the axles.
+    heading: float = 0.0
+    """Direction of the robot's front, relative to the x axis of the base, rad."""
+    backward: bool = False
+    """Whether all wheels roll backward, because their axes point to the right."""
+
+
+BACKWARD = (
+    "the axes of the mecanum wheels point to the right of the robot, so it moves and turns in the "
+    "opposite direction, as in Gazebo"
+)
+"""Describes wheels that roll backward."""
+FORWARD = Rolling()
+"""Wheels of a robot that faces along x."""
+
+
+def rolling(description: RobotDescription, left: Sequence[str], right: Sequence[str]) -> Rolling:
+    """Returns how wheels with positive speeds roll.
+
+    It is the default for a robot that faces along x, and if the wheels' axes differ from each
+    other or from the direction of the axles.
 
     Args:
         description: The robot.
@@ -80,7 +98,7 @@ def rolling_direction(
         joints = [each for each in description.joints if each.name in names]
         places = [front @ poses[each.child] @ each.pose for each in joints]
         if not places:
-            return 0.0
+            return FORWARD
         axes += [
             rotate(place.orientation, each.axis.xyz)
             for place, each in zip(places, joints, strict=True)
@@ -88,7 +106,9 @@ def rolling_direction(
         sides.append(np.mean([place.position for place in places], axis=0))
     mean, gap = np.mean(axes, axis=0), sides[0] - sides[1]
     wide = float(np.linalg.norm(gap))
-    if math.hypot(mean[0], mean[1]) < _AGREE or float(mean @ gap) < _AGREE * wide:
-        return 0.0
-    angle = math.atan2(-mean[0], mean[1])
-    return angle if abs(angle) > _NOISE else 0.0
+    along = float(mean @ gap)
+    if math.hypot(mean[0], mean[1]) < _AGREE or abs(along) < _AGREE * wide:
+        return FORWARD
+    toward_left = math.copysign(1.0, along) * mean
+    angle = math.atan2(-toward_left[0], toward_left[1])
+    return Rolling(heading=angle if abs(angle) > _NOISE else 0.0, backward=along < 0)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from cartwheel.codes import devices, robot, running
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.mecanum import MecanumWheels, MecanumWheelsConfig
-from cartwheel.devices.drives.rollers import has_grip, has_rollers, rolling_direction
+from cartwheel.devices.drives.rollers import BACKWARD, has_grip, has_rollers, rolling
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
@@ -191,7 +191,7 @@ class MecanumDriveController(WheelController):
             radius=radius,
             reach=reach,
             offset=(given.offset_x, given.offset_y, given.offset_yaw),
-            heading=rolling_direction(description, names[0::2], names[1::2]),
+            rolling=rolling(description, names[0::2], names[1::2]),
             limits=(given.linear_x, given.linear_y, given.angular),
         )
         stamped = ros2 and given.stamped
@@ -219,6 +219,9 @@ class MecanumDriveController(WheelController):
         grips = has_grip(description, [each.joint for each in self._joints])
         push = self.robot.push if grips else None
         self._wheels = MecanumWheels(config, wheels, push, self._odometry.reckoning)
+        if config.rolling.backward:
+            values = {"joint": names[0], "attribute": "backwards"}
+            self.warn(robot.WHEEL_AXIS_MISALIGNED, BACKWARD, values=values)
         if not grips:
             self.warn(
                 robot.WHEEL_FRICTIONLESS,
