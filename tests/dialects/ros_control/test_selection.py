@@ -9,9 +9,11 @@ from cartwheel.codes.devices import (
     CONTROL_ELSEWHERE,
     CONTROLLER_UNDEFINED,
     CONTROLLERS_FILE_UNREADABLE,
+    CONTROLLERS_NOT_FOUND,
 )
 from cartwheel.corpus import try_robot
 from cartwheel.description import load_robot
+from cartwheel.description.launches import launches_near
 from cartwheel.dialects.ros_control.selection import with_published_control
 
 SDF = """<sdf version="1.9"><model name="arm">
@@ -192,3 +194,31 @@ def test_a_controller_whose_parameters_are_in_a_launch_file_is_not_reported(mode
     with cw.World("empty") as world:
         world.spawn(tmp_path / "arm/robots/arm.urdf", controllers="auto")
         assert not coded(world, CONTROLLER_UNDEFINED)
+
+
+@pytest.mark.parametrize("joint", ["beam", "wheel"])
+def test_controllers_that_a_distant_launch_file_starts_are_only_those_of_the_robot(tmp_path, joint):
+    """A copy of a robot in a group of packages without controllers, which no launch file starts."""
+    held = beam("beam", "world") + transmission("beam_joint", "Position")
+    texts = {
+        "sims/arms/package.xml": "<package><name>arms</name></package>",
+        "sims/arms/models/arm.urdf": robot(held, ROS1),
+    }
+    for package, driven in (("a", "door"), ("b", joint)):
+        texts |= {
+            f"robots/{package}/package.xml": f"<package><name>{package}</name></package>",
+            f"robots/{package}/config/good.yaml": ONE.format(name="good", joint=driven),
+            f"robots/{package}/launch/control.launch": STARTER.replace(
+                "arm)", f"{package})"
+            ).replace("good bad", "good"),
+        }
+    for name, text in texts.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    verdict = try_robot(
+        tmp_path / "sims/arms/models/arm.urdf", launches=launches_near(tmp_path), standing=1.0
+    )
+    assert verdict.controllers == (("good",) if joint == "beam" else ())
+    codes = [each.code for each in verdict.faults]
+    assert codes == ([] if joint == "beam" else [CONTROLLERS_NOT_FOUND])

@@ -1,6 +1,12 @@
 """Reads launch files: the descriptions, xacro arguments and controller files that they name."""
 
-from cartwheel.description.launches.search import chosen, controllers_for, launches_near, root_of
+from cartwheel.description.launches.search import (
+    chosen,
+    controllers_for,
+    launches_near,
+    root_of,
+    starters,
+)
 from cartwheel.description.launches.start import (
     LaunchedModel,
     LaunchStart,
@@ -19,4 +25,5 @@ __all__ = [
     "launches_near",
     "read_launch",
     "root_of",
+    "starters",
 ]

@@ -155,9 +155,14 @@ def controllers_for(
     """
     if use is not None and use.controllers:
         return use
+    return next(iter(starters(description, uses)), None)
+
+
+def starters(description: Path, uses: Sequence[LaunchUse]) -> list[LaunchUse]:
+    """The launch files without a description that start controllers, nearest first."""
     others = [each for each in uses if each.description is None and each.spawned]
     home = description.absolute()
-    return min(others, key=lambda each: (-_common(each.file, home), str(each.file)), default=None)
+    return sorted(others, key=lambda each: (-_common(each.file, home), str(each.file)))
 
 
 def _order(use: LaunchUse) -> tuple[bool, int, int, int, str]:

@@ -24,6 +24,7 @@ from cartwheel.description.launches import (
     controllers_for,
     launches_near,
     root_of,
+    starters,
 )
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import for_robot, name_and_file, read_parameters
@@ -72,7 +73,8 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     launches = () if folder is None else launches_near(folder, package_path)
     use = chosen(file, launches)
     if not suggested(robot):
-        return Selection(files=(), names=(), problems=tuple(_undefined(robot, use, launches)))
+        starter = _starter(file, use, launches)
+        return Selection(files=(), names=(), problems=tuple(_undefined(robot, starter)))
     return selection(robot, use, launches)
 
 
@@ -107,10 +109,17 @@ def selection(
     if starter is not use and not commanding(robot, named):
         # The launch file of another part only publishes the states of all joints.
         starter, named = None, []
+    if starter is None and (use is None or not use.spawned) and not suggested(robot):
+        for each in starters(Path(robot.origin.file), launches)[:_MOST]:
+            found = suggested(robot, among=each.controllers)
+            if commanding(robot, found):
+                starter, named = each, found
+                break
     files = tuple(each for each in named or suggested(robot) if _is_complete(each, robot))
     names = starter.spawned if starter is not None and (named or not files) else ()
     unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
-    problems = (*unreadable, *_undefined(robot, use, launches))
+    reported = _undefined(robot, starter or _starter(Path(robot.origin.file), use, launches))
+    problems = (*unreadable, *reported)
     return Selection(files=files, names=names, problems=problems)
 
 
@@ -130,15 +139,15 @@ def _unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnos
                 yield replace(found, values={**found.values, "controllers": held})
 
 
-def _undefined(
-    robot: RobotDescription, use: LaunchUse | None, launches: Sequence[LaunchUse]
-) -> Iterator[Diagnostic]:
-    """Controllers that a robot's launch file starts, but that no file near it defines."""
-    file = Path(robot.origin.file)
-    starter, folder = _starter(file, use, launches), root_of(file)
+def _undefined(robot: RobotDescription, starter: LaunchUse | None) -> Iterator[Diagnostic]:
+    """Controllers that a launch file starts, but that no file near it or the robot defines."""
+    folder = root_of(Path(robot.origin.file))
     if starter is None or not starter.spawned or folder is None or not is_controlled(robot):
         return
-    undefined, paths = set(starter.spawned), _definitions(folder)
+    roots = dict.fromkeys((folder, root_of(starter.file) or folder))
+    searched = [_definitions(root) for root in roots]
+    paths = list(itertools.chain(*searched)) if all(searched) else []
+    undefined = set(starter.spawned)
     for path in paths:
         if not undefined:
             return
