@@ -21,6 +21,9 @@ from cartwheel.checks.wheels import (
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats
+from cartwheel.devices.drives.rollers import rolling
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.gz.mecanum import GzMecanumDrive
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import matrix_from_quat
 
@@ -48,18 +51,45 @@ def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
                 if sense < CAMBER and turns:
                     yield _not_across(robot, joint, toward_left)
                 continue
-            node = nodes.child(robot.joint_node(joint.name), "axis")
-            xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
-            yield robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
-                message=f'the wheel of joint "{joint.name}" turns backwards because its axis '
-                "points to the right of the "
-                "robot" + ("" if both else " and the other wheel's axis to the left"),
-                values={"joint": joint.name, "attribute": "backwards"},
-                origin=node.origin if node is not None else joint.origin,
-                instead=f'xyz="{xyz}"' if node is not None else "",
-                place="attribute" if node is not None else "",
-                mark="xyz",
+            yield _backwards(
+                robot, joint, "" if both else " and the other wheel's axis to the left"
             )
+
+
+def _backwards(robot: Robot, joint: Joint, more: str) -> Diagnostic:
+    """The diagnostic for a wheel whose axis points to the right."""
+    node = nodes.child(robot.joint_node(joint.name), "axis")
+    xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
+    return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
+        message=f'the wheel of joint "{joint.name}" turns backwards because its axis points to the '
+        f"right of the robot{more}",
+        values={"joint": joint.name, "attribute": "backwards"},
+        origin=node.origin if node is not None else joint.origin,
+        instead=f'xyz="{xyz}"' if node is not None else "",
+        place="attribute" if node is not None else "",
+        mark="xyz",
+    )
+
+
+@rule(robot_codes.WHEEL_AXIS_MISALIGNED)
+def mecanum_axes(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for tag in robot.description.plugins:
+            if plugin_named(tag.filename) is not GzMecanumDrive or not robot.is_placed:
+                continue
+            sides = [
+                [
+                    each.text.strip()
+                    for end in ("front", "back")
+                    for each in tag.element.find_all(f"{end}_{side}_joint")
+                ]
+                for side in ("left", "right")
+            ]
+            if not rolling(robot.description, *sides).backward:
+                continue
+            for name in (*sides[0], *sides[1]):
+                if joint := robot.joints.get(name):
+                    yield _backwards(robot, joint, "")
 
 
 def _not_across(robot: Robot, joint: Joint, toward_left: Floats) -> Diagnostic:
