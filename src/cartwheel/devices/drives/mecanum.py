@@ -9,18 +9,12 @@ from typing import Literal
 
 from cartwheel.codes import robot
 from cartwheel.component import Scope
+from cartwheel.description.rolling import FORWARD, Rolling, rolling
 from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
-from cartwheel.devices.drives.rollers import (
-    BACKWARD,
-    FORWARD,
-    Rolling,
-    has_grip,
-    has_rollers,
-    rolling,
-)
+from cartwheel.devices.drives.rollers import BACKWARD, has_grip, has_rollers
 from cartwheel.devices.elementwise import Number, cos, sin
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle

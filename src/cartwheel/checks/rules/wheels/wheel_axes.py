@@ -20,8 +20,8 @@ from cartwheel.checks.wheels import (
 )
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
+from cartwheel.description.rolling import rolling
 from cartwheel.description.solids import Floats
-from cartwheel.devices.drives.rollers import rolling
 from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.gz.mecanum import GzMecanumDrive
 from cartwheel.errors import Diagnostic
@@ -35,6 +35,7 @@ _TOE, _CROOKED = 0.004, 0.2
 
 @rule(robot_codes.WHEEL_AXIS_MISALIGNED)
 def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
+    yield from _mecanum(subject)
     for robot, _, left, right in wheel_pairs(subject):
         senses = axis_senses(robot, left, right)
         toward_left = axle_toward_left(robot, left, right)
@@ -71,8 +72,7 @@ def _backwards(robot: Robot, joint: Joint, more: str) -> Diagnostic:
     )
 
 
-@rule(robot_codes.WHEEL_AXIS_MISALIGNED)
-def mecanum_axes(subject: Subject) -> Iterator[Diagnostic]:
+def _mecanum(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for tag in robot.description.plugins:
             if plugin_named(tag.filename) is not GzMecanumDrive or not robot.is_placed:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices, robot, running
+from cartwheel.description.rolling import rolling
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.mecanum import MecanumWheels, MecanumWheelsConfig
-from cartwheel.devices.drives.rollers import BACKWARD, has_grip, has_rollers, rolling
+from cartwheel.devices.drives.rollers import BACKWARD, has_grip, has_rollers
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
@@ -219,7 +220,8 @@ class MecanumDriveController(WheelController):
         grips = has_grip(description, [each.joint for each in self._joints])
         push = self.robot.push if grips else None
         self._wheels = MecanumWheels(config, wheels, push, self._odometry.reckoning)
-        if config.rolling.backward:
+        if config.rolling.backward and config.rolling.heading:
+            # `check_axis` reports the wheels of a robot that faces along x.
             values = {"joint": names[0], "attribute": "backwards"}
             self.warn(robot.WHEEL_AXIS_MISALIGNED, BACKWARD, values=values)
         if not grips:
