@@ -7,9 +7,10 @@ from __future__ import annotations
 import re
 
 import pytest
+import yaml
 
 from cartwheel.checks.sliding import Contact, base_motion
-from cartwheel.codes.robot import SKID_STEERING, WHEEL_BASE_MISMATCH
+from cartwheel.codes.robot import SKID_STEERING, WHEEL_BASE_MISMATCH, WHEEL_DIAMETER_MISMATCH
 
 BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1
 """m: between the axles, between the wheels, between the steered joints, of the wheels."""
@@ -445,6 +446,27 @@ def test_the_sizes_of_wheels_that_other_hardware_moves_are_not_compared(told, tm
     (finding,) = told(car(plain), controller_files=[path])
     assert finding.code is WHEEL_BASE_MISMATCH
     assert told(car(other), controller_files=[path]) == []
+
+
+@pytest.mark.parametrize("namespace", ["", "my_car"])
+@pytest.mark.parametrize("joint", ["rear_left_joint", "rear_joint"])
+def test_the_radius_of_wheels_that_other_hardware_moves_is_compared(
+    told, tmp_path, joint, namespace
+):
+    """The joint that the controller commands need not be in the robot."""
+    path, hardware = tmp_path / "car.yaml", tmp_path / "hardware.yaml"
+    wheels = {"virtual_rear_wheels": ["rear_right_joint", "rear_left_joint"]}
+    held = {"steer_bot_hardware_gazebo": wheels}
+    hardware.write_text(yaml.safe_dump({namespace: held} if namespace else held))
+    tags = {"robotSimType": "steer_bot_hardware_gazebo/SteerBotHardwareGazebo"}
+    robot = car(plugin("libgazebo_ros_control.so", **tags))
+    text = ROS1_STEERED.replace("rear_left_joint", joint)
+    path.write_text(text)
+    assert told(robot, controller_files=[path, hardware]) == []
+    path.write_text(text.replace(f"radius: {RADIUS}", f"radius: {2 * RADIUS}"))
+    (finding,) = told(robot, controller_files=[path, hardware])
+    assert finding.code is WHEEL_DIAMETER_MISMATCH
+    assert finding.values["measured"] == pytest.approx(RADIUS)
 
 
 def test_the_passive_wheels_of_a_tricycle_are_one_axle(told, tmp_path):

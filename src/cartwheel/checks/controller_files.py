@@ -145,6 +145,18 @@ class ControlFile:
         one = self._controller(self.path.stem, self.root)
         return (one,) if one is not None else tuple(self._of_ros1(self.root, ()))
 
+    def words(self, *path: str) -> list[str]:
+        """The texts of a list at a path, also in a namespace."""
+        roots = [self.root, *(value for _, value in pairs(self.root))]
+        lists = [_find(root, list(path)) for root in roots]
+        return [
+            one.value
+            for node in lists
+            if node is not None and node.id == "sequence"
+            for one in node.value
+            if one.id == "scalar"
+        ]
+
     def origin(self, node: Any) -> Origin:
         """The line of a node."""
         return Origin(file=str(self.path), line=node.start_mark.line + 1)

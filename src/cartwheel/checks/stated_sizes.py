@@ -19,7 +19,7 @@ from cartwheel.checks.wheels import axle_of, passive_axle, wheel_axis, wheel_pla
 from cartwheel.description.model import PluginTag
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.ros_control.parameters import SIZES
-from cartwheel.dialects.ros_control.steer_bot import SIM_TYPE
+from cartwheel.dialects.ros_control.steer_bot import PARAMETERS, SIM_TYPE
 from cartwheel.dialects.tag_roles import TagRole
 from cartwheel.errors import Code, Diagnostic, Origin, Place
 
@@ -95,10 +95,24 @@ def stated_sizes(subject: Subject) -> Iterator[Stated]:
                 if size.role in _MEASURES:
                     yield from _of_plugin(robot, tag, size)
     for robot, file in subject.control:
+        sizes = (one for each in file.controllers for one in _of_controller(robot, each))
         if any(_moves_other_joints(tag) for tag in robot.description.plugins):
-            continue
-        for controller in file.controllers:
-            yield from _of_controller(robot, controller)
+            wheels = tuple(_moved_wheels(subject, robot))
+            sizes = (
+                replace(one, first=wheels)
+                for each in file.controllers
+                for one in _of_controller(robot, each, stands_in=wheels[:1])
+                if wheels and one.measure == "radius"
+            )
+        yield from sizes
+
+
+def _moved_wheels(subject: Subject, robot: Robot) -> Iterator[str]:
+    """The wheels that the hardware moves, whose radius a controller of another joint states."""
+    for owner, file in subject.control:
+        if owner is robot:
+            names = file.words(PARAMETERS, "virtual_rear_wheels")
+            yield from (name for name in names if name in robot.joints)
 
 
 def _moves_other_joints(tag: PluginTag) -> bool:
@@ -231,7 +245,16 @@ def _joints(robot: Robot, tag: PluginTag, names: Sequence[str]) -> tuple[str, ..
     return tuple(name for name in found if name in robot.joints)
 
 
-def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
+def _of_controller(
+    robot: Robot, controller: Controller, stands_in: Sequence[str] = ()
+) -> Iterator[Stated]:
+    """The sizes that a controller states.
+
+    Args:
+        robot: The robot.
+        controller: Its controller.
+        stands_in: Joints for those that the robot does not have.
+    """
     joints = {
         row.field: claimed.values(controller, row) for row in claimed.table(controller, "joint")
     }
@@ -249,7 +272,7 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
         if len(groups) == 2 and groups[0] is groups[1]:
             # The distance between both wheels of one axle.
             groups = [groups[0][:1], groups[0][1:2]] if len(groups[0]) == 2 else [[], []]
-        sides = [tuple(_known(robot, group)) for group in groups]
+        sides = [tuple(_known(robot, group)) or tuple(stands_in) for group in groups]
         if row.role == "wheel_base" and len(sides) == 1:
             sides.append(passive_axle(robot, sides[0]))
         written = value or times
