@@ -36,6 +36,27 @@ def test_objects_arrive_in_order(ends):
         other.receive()
 
 
+@pytest.mark.parametrize("parts", [0, 1])
+def test_the_rest_of_an_interrupted_transfer_is_not_received_as_the_next_one(ends, parts):
+    one, other = ends
+    one.send("first")
+    one.send("second")
+    receive = iter([other._connection._recv] * parts)
+
+    def interrupted(size: int):
+        for each in receive:
+            return each(size)
+        raise KeyboardInterrupt
+
+    other._connection._recv = interrupted
+    with pytest.raises(KeyboardInterrupt):
+        other.receive()
+    with pytest.raises(EOFError):
+        other.receive()
+    with pytest.raises((EOFError, OSError)):
+        one.receive()
+
+
 def test_a_process_looks_for_data_before_it_sleeps_if_the_last_wait_was_short(ends, monkeypatch):
     one, other = ends
     looks = []

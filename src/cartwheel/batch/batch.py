@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import functools
 import itertools
+import multiprocessing
+import os
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import TracebackType
@@ -11,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from cartwheel.batch.lane import Values, different_shapes
+from cartwheel.batch.lane import Values, check_alike
 from cartwheel.batch.plan import BACKENDS, Actions, Backend, Observations, Plan, Vary, invalid
 from cartwheel.batch.processes import Lanes, Method, Process
 from cartwheel.codes.world import BATCH_CLOSED
@@ -113,14 +116,22 @@ class Batch:
         self._columns = len(self._plan.action_names)
         self.n = n
         self.seed = seed = int(seed)
-        count = min(n - 1, cores() - 1 if workers is None else workers)
+        # multiprocessing starts no processes from a process of a pool.
+        daemon = multiprocessing.current_process().daemon
+        if workers is None:
+            workers = 0 if daemon else cores() - 1
+        count = min(n - 1, workers)
         if count < 0:
             raise invalid(f"the number of processes must be at least 0 (got {count})", "workers")
+        if count and daemon:
+            raise invalid("a daemonic process cannot start processes: use workers=0", "workers")
         seeds = [seed + index for index in range(n)]
         self._seeds = [*seeds]
         self._begun = [False] * n
         """Whether each world has been reset."""
         self._closed = False
+        self._lock = threading.Lock()
+        self._pid = os.getpid()
         self._here: Lanes | None = None
         self._processes: list[Process] = []
         self._edges = np.linspace(0, n, count + 2).astype(int).tolist()
@@ -244,6 +255,10 @@ class Batch:
     def _chosen(self, which: Sequence[int] | Array | None) -> list[int]:
         if self._closed:
             raise CartwheelError("the batch is closed", code=BATCH_CLOSED)
+        if self._processes and self._pid != os.getpid():
+            raise CartwheelError(
+                "the batch cannot be used in a process that was forked after it", code=BATCH_CLOSED
+            )
         if which is None:
             return self._every
         found = np.asarray(which)
@@ -278,23 +293,24 @@ class Batch:
             part_of: The argument for some of the chosen worlds.
         """
         asked: list[tuple[Callable[[], Values], slice | list[int]]] = []
-        for share in self._shares(chosen):
-            arguments = share.worlds, part_of(share.rows)
-            if share.process == 0:
-                here = functools.partial(getattr(self._here, name), *arguments)
-                asked.append((here, share.rows))
-            else:
-                process = self._processes[share.process - 1]
-                process.ask(name, *arguments)
-                asked.append((process.answer, share.rows))
-        return _joined(asked, len(chosen))
+        with self._lock:  # one thread after the other
+            for share in self._shares(chosen):
+                arguments = share.worlds, part_of(share.rows)
+                if share.process == 0:
+                    here = functools.partial(getattr(self._here, name), *arguments)
+                    asked.append((here, share.rows))
+                else:
+                    process = self._processes[share.process - 1]
+                    process.ask(name, *arguments)
+                    asked.append((process.answer, share.rows))
+            return _joined(asked, len(chosen))
 
     def close(self) -> None:
         """Closes all worlds and ends all processes."""
         self._closed = True
         if self._here is not None:
             self._here.close()
-        for process in self._processes:
+        for process in self._processes if self._pid == os.getpid() else ():
             process.close()
         self._processes.clear()
 
@@ -314,10 +330,10 @@ def _joined(asked: Sequence[tuple[Callable[[], Values], slice | list[int]]], cou
         raise failure
     found: Values = {}
     for name in answers[0][1]:
-        shapes = {part[name].shape[1:] for _, part in answers}
-        if len(shapes) > 1:
-            raise different_shapes(name, shapes)
-        found[name] = np.empty((count, *shapes.pop()), answers[0][1][name].dtype)
+        first = answers[0][1][name]
+        for _, part in answers:
+            check_alike(name, first[0], part[name][0])
+        found[name] = np.empty((count, *first.shape[1:]), first.dtype)
         for rows, part in answers:
             found[name][rows] = part[name]
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -125,7 +125,7 @@ class Lane:
             else:
                 try:
                     found[name] = _numbers(source(self.world))
-                except (TypeError, ValueError) as error:
+                except (TypeError, ValueError, OverflowError) as error:
                     raise invalid(
                         f'the function of the observation "{name}" must return numbers: {error}',
                         "obs",
@@ -174,7 +174,7 @@ def stacked(rows: list[Mapping[str, Array]]) -> Values:
     """The observations of several worlds, with the world as the first axis.
 
     Raises:
-        CartwheelError: Arrays of an observation have different shapes.
+        CartwheelError: Arrays of an observation have different shapes or types.
     """
     found: Values = {}
     for name, first in rows[0].items():
@@ -182,16 +182,21 @@ def stacked(rows: list[Mapping[str, Array]]) -> Values:
         table = found[name] = np.empty((len(rows), *shape), first.dtype)
         for line, row in enumerate(rows):
             each = row[name]
-            if each.shape != shape:
-                raise different_shapes(name, {row[name].shape for row in rows})
+            if each.shape != shape or each.dtype != first.dtype:
+                check_alike(name, first, each)
             table[line] = each
     return found
 
 
-def different_shapes(name: str, shapes: Iterable[tuple[int, ...]]) -> CartwheelError:
-    """The error of an observation that is not of the same size in all worlds."""
-    return invalid(
-        f'the observation "{name}" has different shapes in different worlds: '
-        f"{', '.join(map(str, sorted(shapes)))}",
-        "obs",
-    )
+def check_alike(name: str, one: Array, other: Array) -> None:
+    """Checks that an observation is alike in two worlds.
+
+    Raises:
+        CartwheelError: The arrays have different shapes or types.
+    """
+    for what, a, b in (("shapes", one.shape, other.shape), ("types", one.dtype, other.dtype)):
+        if a != b:
+            raise invalid(
+                f'the observation "{name}" has different {what} in different worlds: {a} and {b}',
+                "obs",
+            )

@@ -25,6 +25,9 @@ up."""
 class Link:
     """Sends and receives objects that can be pickled.
 
+    If an exception, such as that of Ctrl-C, interrupts a transfer, the link is closed: the rest of
+    the object would be received as the next one.
+
     Args:
         connection: Connects the two processes.
     """
@@ -43,20 +46,36 @@ class Link:
             OSError: The other process has ended.
         """
         # `Connection.send` also pickles sockets and such, which takes a third of its time.
-        self._connection.send_bytes(pickle.dumps(sent, pickle.HIGHEST_PROTOCOL))
+        data = pickle.dumps(sent, pickle.HIGHEST_PROTOCOL)
+        try:
+            self._connection.send_bytes(data)
+        except BaseException:
+            self.close()
+            raise
 
     def receive(self) -> Any:
         """Waits for an object.
 
         Raises:
-            EOFError: The other process has ended.
+            EOFError: The other process has ended, or the link is closed.
             OSError: The same.
         """
+        if self._connection.closed:
+            raise EOFError
         start = time.perf_counter()
+        has_arrived = False
         if self._is_quick:
-            while not self._arrived.poll(0) and time.perf_counter() - start < _SPIN:
+            while not (has_arrived := bool(self._arrived.poll(0))):
+                if time.perf_counter() - start >= _SPIN:
+                    break
                 os.sched_yield()  # other programs come first, such as the other process
-        received = self._connection.recv_bytes()
+        if not has_arrived:
+            self._arrived.poll()  # an interruption of this wait leaves the object where it is
+        try:
+            received = self._connection.recv_bytes()
+        except BaseException:
+            self.close()
+            raise
         self._is_quick = time.perf_counter() - start < _SPIN
         return pickle.loads(received)  # noqa: S301 - sent by Cartwheel
 

@@ -100,8 +100,11 @@ class Process:
         ours, theirs = context.Pipe()
         self._link = Link(ours)
         self._calls = 0
+        # A forked process has a copy of this end, with which it would not notice that this process
+        # was killed.
+        ends = (theirs, ours) if method == "fork" else (theirs,)
         self._process: Any = context.Process(
-            target=_work, args=(theirs, built, plan, seeds, device), name="cartwheel-batch",
+            target=_work, args=(ends, built, plan, seeds, device), name="cartwheel-batch",
             daemon=True,
         )  # fmt: skip
         self._process.start()
@@ -147,9 +150,20 @@ class Process:
 
 
 def _work(
-    connection: Connection, built: Built, plan: Plan, seeds: Sequence[int], device: str | None
+    ends: Sequence[Connection], built: Built, plan: Plan, seeds: Sequence[int], device: str | None
 ) -> None:
-    """Runs in the process: answers calls until the link is closed."""
+    """Runs in the process: answers calls until the link is closed.
+
+    Args:
+        ends: Its end of the link, and copies of other ends.
+        built: As for `Lanes`, like the others.
+        plan: The same.
+        seeds: The same.
+        device: The same.
+    """
+    connection, *copies = ends
+    for each in copies:
+        each.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process ends this one
     link = Link(connection)
     with contextlib.suppress(EOFError, OSError):
