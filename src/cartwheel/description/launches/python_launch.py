@@ -322,6 +322,7 @@ class _Reader:
             if isinstance(passed, dict)
             else {}
         )
+        self._facts.effort.spend(len(self.defaults))
         defaults = {name: joined(value) for name, value in self.defaults.items()}
         inherited = {**defaults, **self._given}
         self._facts.include(joined(source), arguments, self._depth, inherited)
