@@ -14,7 +14,7 @@ from cartwheel.codes.files import (
     NOT_A_DESCRIPTION,
     XML_MALFORMED,
 )
-from cartwheel.description.launches import LaunchStart, is_launch_file, read_launch
+from cartwheel.description.launches import is_launch_file, read_launch
 
 ROS1 = """<launch>
   <arg name="arena" default="$(find bot)/worlds/arena.world"/><arg name="height" default="0.2"/>
@@ -206,174 +206,33 @@ def test_launch_files_are_known_by_their_name_or_contents(bot: Path) -> None:
     assert not is_launch_file(bot / "launch")
 
 
-TWO_GROUPS = """<launch>
-  <group ns="one"><param name="robot_description" textfile="$(find bot)/urdf/bot.xacro"/>
-    <node pkg="gazebo_ros" type="spawn_model" name="s" args="-param robot_description -model a"/>
-  </group>
-  <include ns="two" file="$(find bot)/launch/other.launch"/>
-  <node pkg="gazebo_ros" type="spawn_model" name="s" args="-param two/robot_description -model c"/>
-</launch>"""
-OTHER = """<launch>
-  <param name="robot_description" textfile="$(find bot)/urdf/other.urdf"/>
-  <group ns="{group}"><node pkg="gazebo_ros" type="spawn_model" name="s"
-    args="-param /two/robot_description -model b"/></group>
-</launch>"""
+@pytest.mark.parametrize("tag", ["arg", "let"])
+def test_a_constant_is_no_argument(bot: Path, tag: str) -> None:
+    text = f'<launch><{tag} name="kind" value="bot"/><param name="robot_description" '
+    text += 'textfile="$(find bot)/urdf/$(arg kind).xacro"/></launch>'
+    start = read_launch(written(bot, "a.launch", text), {"kind": "other"})
+    assert [each.description.name for each in start.models] == ["bot.xacro"]
+    (found,) = start.diagnostics
+    assert found.code is ARGUMENT_UNKNOWN and found.values["name"] == "kind"
 
 
-@pytest.mark.parametrize(("group", "namespace"), [("", "two"), ("sub/", "two/sub"), ("/x", "x")])
-def test_groups_have_descriptions_and_namespaces_of_their_own_in_xml(
-    bot: Path, group: str, namespace: str
-) -> None:
-    written(bot, "other.launch", OTHER.format(group=group))
-    start = read_launch(written(bot, "a.launch", TWO_GROUPS), {})
-    assert started(start) == [
-        ("a", "bot.xacro", "one"),
-        ("b", "other.urdf", namespace),
-        ("c", "other.urdf", ""),
-    ]
-
-
-def started(start: LaunchStart) -> list[tuple[str, str, str]]:
-    """Name, description and namespace of each model."""
-    return [(each.spawn.name, each.description.name, each.spawn.namespace) for each in start.models]
-
-
-def test_a_namespace_in_xml_for_ros_2(bot: Path) -> None:
-    text = """<launch><group><push_ros_namespace namespace="one"/>
-      <node pkg="gazebo_ros" exec="spawn_entity.py" namespace="$(var space)"
-        args="-file $(find-pkg-share bot)/urdf/other.urdf -entity a"/></group>
-      <node pkg="ros_gz_sim" exec="create" namespace="two"
-        args="-file $(find-pkg-share bot)/urdf/other.urdf -name b"/></launch>"""
-    path = written(bot, "a.launch.xml", text)
-    found = [("a", "other.urdf", "one/sub"), ("b", "other.urdf", "")]
-    assert started(read_launch(path, {"space": "sub"})) == found
-    start = read_launch(path, {})
-    assert started(start) == [("a", "other.urdf", ""), found[1]]
-    (unknown,) = start.diagnostics
-    assert unknown.code is LAUNCH_VALUE_UNKNOWN and unknown.values == {"what": "namespace"}
-
-
-LOOP = """
-for name in ["bot.xacro", "other.urdf"]:
-    file = PathJoinSubstitution([FindPackageShare("bot"), "urdf", name])
-    {publish}
-    Node(package="ros_gz_sim", executable="create",
-         arguments=["-name", name, {source}])
-"""
-STATE_PUBLISHER = (
-    'Node(package="robot_state_publisher", namespace=name, parameters=[{"robot_description": %s}])'
-)
-
-
+@pytest.mark.wording
 @pytest.mark.parametrize(
-    ("publish", "source"),
+    ("name", "text"),
     [
-        (STATE_PUBLISHER % 'Command(["xacro ", file])', '"-topic", f"/{name}/robot_description"'),
-        (STATE_PUBLISHER % "open(file).read()", '"-topic", name + "/robot_description"'),
-        ("text = xacro.process_file(file).toxml()", '"-string", text'),
+        (
+            "a.launch",
+            """<launch><arg name="height" default="1"/><arg name="kind"/><arg name="b" value="1"/>
+            <param name="robot_description" textfile="$(find bot)/urdf/$(arg kind).xacro"/>
+            </launch>""",
+        ),
+        (
+            "a.launch.py",
+            'DeclareLaunchArgument("height", default_value="1")\nDeclareLaunchArgument("kind")\n',
+        ),
     ],
 )
-def test_each_model_in_python_has_its_description(bot: Path, publish: str, source: str) -> None:
-    path = written(bot, "a.launch.py", LOOP.format(publish=publish, source=source))
-    assert started(read_launch(path, {})) == [
-        ("bot.xacro", "bot.xacro", ""),
-        ("other.urdf", "other.urdf", ""),
-    ]
-
-
-def spawner(name: str, more: str = "") -> str:
-    """A node in Python that spawns a model."""
-    return (
-        'Node(package="gazebo_ros", executable="spawn_entity.py", arguments=["-entity", '
-        f'"{name}", "-file", os.path.join(FindPackageShare("bot"), "urdf/other.urdf")]{more})'
-    )
-
-
-def test_namespaces_of_nodes_and_groups_in_python(bot: Path) -> None:
-    text = f"""
-GroupAction([PushRosNamespace(LaunchConfiguration("space")), {spawner("a")},
-             GroupAction([PushRosNamespace("sub"), {spawner("b", ', namespace="arm"')}]),
-             {spawner("c")}])
-DeclareLaunchArgument("space", default_value="one")
-{spawner("d")}
-"""
-    path = written(bot, "a.launch.py", text)
-    spaces = {name: space for name, _, space in started(read_launch(path, {}))}
-    assert spaces == {"a": "one", "b": "one/sub/arm", "c": "one", "d": ""}
-
-
-@pytest.mark.parametrize(
-    ("condition", "expected"),
-    [
-        ("IfCondition(sim)", True),
-        ("UnlessCondition(sim)", False),
-        ("IfCondition(NotSubstitution(sim))", False),
-        ('IfCondition(EqualsSubstitution(kind, "arm"))', True),
-        ('UnlessCondition(predicate_expression=EqualsSubstitution(kind, "arm"))', False),
-        ('IfCondition(NotEqualsSubstitution(kind, "arm"))', False),
-        ('IfCondition(AndSubstitution(sim, "false"))', False),
-        ('IfCondition(OrSubstitution(sim, "false"))', True),
-        ("IfCondition(PythonExpression([\"'\", kind, \"' == 'leg'\"]))", False),
-        ("IfCondition(LaunchConfiguration('unknown'))", True),
-        ("IfCondition(AndSubstitution())", True),
-        ("other", True),
-    ],
-)
-def test_conditions_of_actions_in_python(bot: Path, condition: str, expected: bool) -> None:
-    text = f"""
-sim, kind = LaunchConfiguration("sim"), LaunchConfiguration("kind")
-DeclareLaunchArgument("sim", default_value="True")
-DeclareLaunchArgument("kind", default_value="arm")
-{spawner("always")}
-{spawner("one", f", condition={condition}")}
-GroupAction([{spawner("two")}], condition={condition})
-"""
-    names = [name for name, _, _ in started(read_launch(written(bot, "a.launch.py", text), {}))]
-    assert names == (["always", "one", "two"] if expected else ["always"])
-
-
-def test_branches_of_known_conditions_in_python(bot: Path) -> None:
-    text = f"""
-def start(context):
-    kind = LaunchConfiguration("kind").perform(context)
-    if kind == "arm":
-        {spawner("arm")}
-    elif kind == unknown:
-        {spawner("perhaps")}
-    else:
-        {spawner("leg")}
-DeclareLaunchArgument("kind", default_value="arm")
-OpaqueFunction(function=start)
-"""
-    path = written(bot, "a.launch.py", text)
-    assert [each[0] for each in started(read_launch(path, {}))] == ["arm"]
-    assert [each[0] for each in started(read_launch(path, {"kind": "b"}))] == ["perhaps", "leg"]
-
-
-@pytest.mark.parametrize("name", ["parent.launch.py", "parent.launch"])
-def test_included_files_inherit_arguments_in_ros_2(bot: Path, name: str) -> None:
-    included = f"{bot}/launch/child.launch.py"
-    written(
-        bot,
-        "child.launch.py",
-        'DeclareLaunchArgument("kind", default_value="bot.xacro")\n'
-        'xacro.process_file(os.path.join(FindPackageShare("bot"), "urdf", '
-        'LaunchConfiguration("kind")))\n',
-    )
-    python = 'DeclareLaunchArgument("kind", default_value="other.urdf")\n'
-    python += f'IncludeLaunchDescription("{included}")\n'
-    text = f'<launch><arg name="kind" default="other.urdf"/><include file="{included}"/></launch>'
-    path = written(bot, name, python if name.endswith("py") else text)
-    assert read_launch(path, {}).models[0].description.name == "other.urdf"
-    assert read_launch(path, {"kind": "bot.xacro"}).models[0].description.name == "bot.xacro"
-
-
-def test_a_file_in_python_that_begins_with_a_byte_order_mark(bot: Path) -> None:
-    path = written(bot, "a.launch.py", "\ufeff" + spawner("a") + "\n")
-    assert [each[0] for each in started(read_launch(path, {}))] == ["a"]
-
-
-def test_a_file_at_another_place_is_spawned(bot: Path) -> None:
-    """The file of a model is found in the package, as that of robot_description is."""
-    text = spawner("a").replace('FindPackageShare("bot")', '"/opt/ws/src/bot"')
-    assert started(read_launch(written(bot, "a.launch.py", text), {})) == [("a", "other.urdf", "")]
+def test_required_arguments_are_named(bot: Path, name: str, text: str) -> None:
+    with raises(NOT_A_DESCRIPTION) as caught:
+        read_launch(written(bot, name, text), {})
+    assert "Its arguments: height, kind. Without a value: kind." in caught.value.hint

@@ -93,7 +93,9 @@ def read_launch(
         raise _failure(file, "reading the launch file takes too long") from None
     models = tuple(_models(facts, uses))
     if not models:
+        required = sorted(facts.declared - {*facts.defaults, *arguments})
         named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
+        named += f"Without a value: {', '.join(required)}. " if required else ""
         raise _failure(file, "the launch file names no description that exists", named)
     world = facts.world
     if not world and file.suffix == ".py":

@@ -126,7 +126,7 @@ class Facts:
     bridges: list[Path] = field(default_factory=list)
     """Configuration files of ros_gz_bridge."""
     declared: set[str] = field(default_factory=set)
-    """Names of the arguments of the launch file itself."""
+    """Names of the arguments of the launch file itself that can be set."""
     count: int = 0
     """Number of files that were read."""
     defaults: dict[str, str] = field(default_factory=dict)

@@ -100,7 +100,7 @@ class _Reader:
 
     def _argument(self, node: Node) -> None:
         name = node.attributes.get("name", "")
-        if not self._depth:
+        if not self._depth and "value" not in node.attributes:
             self._facts.declared.add(name)
         if "value" in node.attributes:
             self._arguments[name] = self._value(node, "value")
