@@ -449,6 +449,27 @@ def test_the_launch_file_that_starts_controllers_is_chosen(package):
 
 
 @pytest.mark.parametrize(
+    "publisher", ["joint_state_controller", "joint_broad", "JointStateBroadcaster"]
+)
+def test_a_launch_file_that_only_starts_a_publisher_of_states_comes_last(package, publisher):
+    """MoveIt's assistant writes such launch files, although those of the robot start more."""
+    states = CONTROL.replace("arm_controller joints", publisher)
+    folder = package(
+        a_dot_launch=ROS1.replace("control.launch", "states.launch"),
+        states_dot_launch=states,
+        b_dot_launch=ROS1,
+        control_dot_launch=CONTROL,
+    )
+    launches = launches_near(folder)
+    (other,) = [each for each in launches if each.file.name == "a.launch"]
+    assert other.spawned == (publisher,)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches)
+    assert use.file == folder / "launch/b.launch"
+    alone = chosen(folder / "urdf/arm.urdf.xacro", [other])
+    assert alone is other
+
+
+@pytest.mark.parametrize(
     ("content", "namespace", "name"),
     [
         ("type: a/B\njoint: j", 'ns="left/grip_controller"', "grip_controller="),

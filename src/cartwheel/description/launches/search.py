@@ -27,6 +27,8 @@ _VARIANTS = 20
 """Maximum number of other values of its arguments with which a launch file is read."""
 _TRIED = 100
 """Maximum number of its arguments for which the folder of a description is searched."""
+_PUBLISHER = re.compile(r"state|broad", re.IGNORECASE)
+"""Part of the names of controllers that only publish, such as ``joint_state_controller``."""
 _LEVELS = 4
 """Number of folders above a description that are searched for its package."""
 
@@ -138,7 +140,8 @@ def root_of(description: Path) -> Path | None:
 def chosen(description: Path, uses: Iterable[LaunchUse]) -> LaunchUse | None:
     """The launch file for a description: one that starts Gazebo and controllers, if there is one.
 
-    Among equal ones it is the first by the number of unknown arguments and by path.
+    One that starts more than the publisher of joint states comes first. Among equal ones it is the
+    first by the number of unknown arguments and by path.
     """
     path = description.resolve()
     own = [
@@ -165,11 +168,13 @@ def starters(description: Path, uses: Sequence[LaunchUse]) -> list[LaunchUse]:
     return sorted(others, key=lambda each: (-_common(each.file, home), str(each.file)))
 
 
-def _order(use: LaunchUse) -> tuple[bool, int, int, int, str]:
+def _order(use: LaunchUse) -> tuple[bool, int, bool, int, int, str]:
     return (
         not use.simulated,
         # A file may be loaded without a controller in it being started.
         -bool(use.spawned) - bool(use.controllers),
+        # Launch files of MoveIt's assistant may only start a controller that moves nothing.
+        all(_PUBLISHER.search(name) for name in use.spawned),
         use.unknown,
         len(use.file.parts),
         str(use.file),
