@@ -161,15 +161,15 @@ def test_a_function_changes_messages(world, cart):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "reported"),
     [(lambda m: 5, "int"), (lambda m: Twist(), "Twist"),
      (lambda m: dataclasses.replace(m, child_frame_id=3), "child_frame_id")],
 )  # fmt: skip
-def test_the_function_returns_messages_of_the_topic(world, cart, wrong, told):
+def test_the_function_returns_messages_of_the_topic(world, cart, wrong, reported):
     odometry = cart.topic("/odom")
     with world.fault("/odom", change=wrong), raises(FIELD_VALUE_INVALID) as caught:
         world.run(0.1)
-    assert "/odom" in str(caught.value) and told in str(caught.value)
+    assert "/odom" in str(caught.value) and reported in str(caught.value)
     assert odometry.count == 0
 
 

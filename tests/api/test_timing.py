@@ -308,10 +308,10 @@ def test_stop_ends_a_wait() -> None:
 
 def test_actions_run_at_their_times_before_the_step() -> None:
     with cw.World("empty") as world:
-        told: list[tuple[str, float]] = []
+        reported: list[tuple[str, float]] = []
 
         def note(name: str) -> None:
-            told.append((name, world.time))
+            reported.append((name, world.time))
 
         world.on(0.2, lambda: note("second"))
         world.on(0.1, lambda: note("first"))
@@ -324,9 +324,9 @@ def test_actions_run_at_their_times_before_the_step() -> None:
         cancelled.cancel()
         world.on(0.25, lambda: world.on(0.3, lambda: note("from an action")))
         world.run(0.2)
-        assert told == [("first", 0.1), ("second", 0.2), ("third", 0.2)]
+        assert reported == [("first", 0.1), ("second", 0.2), ("third", 0.2)]
         world.run(0.2)
-        assert told[3:] == [("within a step", 0.205), ("from an action", 0.3)]
+        assert reported[3:] == [("within a step", 0.205), ("from an action", 0.3)]
         assert not cancelled.pending
         assert later.pending
         with raises(NUMBER_OUT_OF_RANGE):
@@ -335,7 +335,7 @@ def test_actions_run_at_their_times_before_the_step() -> None:
             world.on(0.5, None)  # type: ignore[arg-type]
         world.on(world.time, lambda: note("now"))
         world.step()
-        assert told[5:] == [("now", 0.4)]
+        assert reported[5:] == [("now", 0.4)]
 
 
 def test_an_action_acts_in_its_step() -> None:
@@ -352,18 +352,18 @@ def test_an_action_acts_in_its_step() -> None:
 
 def test_a_reset_removes_actions() -> None:
     with cw.World("empty") as world:
-        told: list[float] = []
-        timer = world.on(0.2, lambda: told.append(world.time))
+        reported: list[float] = []
+        timer = world.on(0.2, lambda: reported.append(world.time))
         world.run(0.1)
         world.reset()
         assert not timer.pending
         world.run(0.5)
-        assert told == []
+        assert reported == []
         world.on(0.6, world.reset)
-        world.on(0.7, lambda: told.append(world.time))
+        world.on(0.7, lambda: reported.append(world.time))
         world.run(0.5)
         world.run(1.0)
-        assert told == []
+        assert reported == []
 
 
 @pytest.mark.parametrize("speed", [None, 100.0])

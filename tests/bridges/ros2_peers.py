@@ -95,8 +95,8 @@ class Peer:
         data = encode_cdr(from_dict(type_.request, values))
         before = len(self.lines)
         parts = (type_.request_hash, type_.response_hash) if hashes else ()
-        told = [f"typehash={each};" for each in parts]
-        self.tell("call", service, type_.dds, data.hex(), *told)
+        reported = [f"typehash={each};" for each in parts]
+        self.tell("call", service, type_.dds, data.hex(), *reported)
         answer = wait_for(
             lambda: [
                 line

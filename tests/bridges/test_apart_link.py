@@ -40,15 +40,15 @@ def pair() -> Iterator[Pair]:
 
 
 def test_calls_are_answered_and_notifications_come_in_order(pair: Pair) -> None:
-    told: list[int] = []
+    reported: list[int] = []
     pair.far.handle("add", lambda a, b: a + b)
-    pair.far.handle("note", told.append)
-    pair.far.handle("told", lambda: list(told))
+    pair.far.handle("note", reported.append)
+    pair.far.handle("reported", lambda: list(reported))
     pair.near.start()
     pair.far.start()
     for number in range(500):
         pair.near.notify("note", number)
-    assert pair.near.call("told").result(_PATIENCE) == list(range(500))
+    assert pair.near.call("reported").result(_PATIENCE) == list(range(500))
     assert pair.near.call("add", 2, 3).result(_PATIENCE) == 5
 
 
@@ -225,12 +225,12 @@ def test_dropped_feedback_is_counted_for_the_user(
         pair.near.notify_in_time("feedback", bytes(100_000))
     pair.far.start()
     pair.near.call("done").result(_PATIENCE)
-    told = threading.Event()
+    reported = threading.Event()
     monkeypatch.setattr(
-        pair.near, "_on_fault", lambda fault: (pair.faults.append(fault), told.set())
+        pair.near, "_on_fault", lambda fault: (pair.faults.append(fault), reported.set())
     )
     if len(pair.faults) < 2:
-        assert told.wait(_PATIENCE)
+        assert reported.wait(_PATIENCE)
     assert [getattr(fault, "code", fault) for fault in pair.faults] == [
         BRIDGE_SLOW,
         BRIDGE_RECOVERED,

@@ -135,11 +135,11 @@ def test_every_type_is_read_by_clients(folder: Path) -> None:
     types = [
         kind for kind in sorted(store().fielddefs) if kind in built_in and "/action/" not in kind
     ]
-    told = []
+    reported = []
     for kind in types:
         encoding = encoding_of(kind)
         schema = schema_of(kind, encoding)
-        told.append(
+        reported.append(
             {
                 "name": kind,
                 "encoding": encoding,
@@ -147,10 +147,10 @@ def test_every_type_is_read_by_clients(folder: Path) -> None:
                 "data": base64.b64encode(packed(Graph(), zero(kind), encoding)).decode(),
             }
         )
-    assert {one["encoding"] for one in told} == {"cdr", "ros1"}
+    assert {one["encoding"] for one in reported} == {"cdr", "ros1"}
     # These two are lists of constants, which no topic has.
     odd = {"rcl_interfaces/msg/ParameterType", "statistics_msgs/msg/StatisticDataType"}
-    assert [one for one in unreadable(told, folder) if one.partition(":")[0] not in odd] == []
+    assert [one for one in unreadable(reported, folder) if one.partition(":")[0] not in odd] == []
 
 
 def test_messages_arrive_as_they_were_published(served: Served, client: Client) -> None:
@@ -389,12 +389,12 @@ def test_messages_come_close_to_the_published_time(served: Served, client: Clien
     """Lichtblick plots a message at the last time that it has received."""
     client.subscribe("/odom")
     client.wait("message", count=200)
-    told, off = None, []
+    reported, off = None, []
     for event in client.of("time", "message"):
         if event["event"] == "time":
-            told = event["time"]
-        elif told is not None:
-            off.append(abs(event["time"] - told))
+            reported = event["time"]
+        elif reported is not None:
+            off.append(abs(event["time"] - reported))
     assert sorted(off)[len(off) // 2] <= 30 * 10**6
 
 
@@ -445,8 +445,8 @@ def test_playback_control(folder: Path) -> None:
             for message in link:
                 if isinstance(message, bytes) and message[0] == 5 and message[1] == 0:
                     break
-            _, _, told, speed, sought, length = struct.unpack("<BBQfBI", message)
-            assert (told < 10**9, speed, sought, length) == (True, 1.0, 0, 0)
+            _, _, reported, speed, sought, length = struct.unpack("<BBQfBI", message)
+            assert (reported < 10**9, speed, sought, length) == (True, 1.0, 0, 0)
         client.close()
 
 

@@ -104,11 +104,11 @@ ROBOT = """<?xml version="1.0"?>
 ROSPY = """
 import json, sys, rospy, genpy.dynamic
 rospy.init_node("reader", anonymous=True, disable_rostime=True)
-told = rospy.wait_for_message("/loads", rospy.AnyMsg, timeout=100)
-header = told._connection_header
+reported = rospy.wait_for_message("/loads", rospy.AnyMsg, timeout=100)
+header = reported._connection_header
 # genpy generates the class from the definition, and computes the md5 sum itself.
 made = genpy.dynamic.generate_dynamic(header["type"], header["message_definition"])
-message = made[header["type"]]().deserialize(told._buff)
+message = made[header["type"]]().deserialize(reported._buff)
 print(json.dumps({
     "type": header["type"],
     "md5": header["md5sum"],
@@ -255,9 +255,9 @@ def test_rospy_reads_the_type(start: Start, workspace: Path, tmp_path: Path, man
             "--ros1", **{key: master.environment[key] for key in ("ROS_MASTER_URI", "ROS_HOSTNAME")}
         )
         output, _ = master.python(ROSPY).communicate(timeout=120)
-        told = json.loads(output)
-        assert told.pop("md5") == told.pop("own") == "0b24b21d6403bfab16631035cb454641"
-        assert told == {
+        reported = json.loads(output)
+        assert reported.pop("md5") == reported.pop("own") == "0b24b21d6403bfab16631035cb454641"
+        assert reported == {
             "type": f"{PACKAGE}/WheelLoads",
             "frame": "base_link",
             "x": 1.0,

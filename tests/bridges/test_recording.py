@@ -734,13 +734,15 @@ def test_a_full_disk_ends_the_run_and_keeps_what_was_written(name: str, tmp_path
     assert run.returncode == 2, run.stderr
     assert "Traceback" not in run.stderr
     assert str(path) in run.stderr
-    (told,) = re.findall(r"stopped at ([\d.]+) s", run.stderr)
+    (reported,) = re.findall(r"stopped at ([\d.]+) s", run.stderr)
     found = read_with_rosbags(path) if name != "drive.db3" else _read_broken(name, path)
     times = [t for t, _ in found["/clock"]]
     assert len(times) > 100
     assert times == [max(i * 10_000_000, int(name == "drive.bag")) for i in range(len(times))]
     # Whatever else was published at that time.
-    assert max(t for each in found.values() for t, _ in each) / 1e9 == pytest.approx(float(told))
+    assert max(t for each in found.values() for t, _ in each) / 1e9 == pytest.approx(
+        float(reported)
+    )
 
 
 def test_a_write_that_fails_leaves_no_part_of_itself(tmp_path: Path) -> None:

@@ -252,7 +252,7 @@ def test_damage_is_reported_and_is_no_fault(name: str, tmp_path: Path) -> None:
     drive(path, 0.3, topics=["!*image*"])
     whole = path.read_bytes()
     chance = random.Random(7)
-    told = 0
+    reported = 0
     for _ in range(60):
         broken = bytearray(whole)
         for _ in range(8):
@@ -271,8 +271,8 @@ def test_damage_is_reported_and_is_no_fault(name: str, tmp_path: Path) -> None:
                 NOT_A_RECORDING,
                 RECORDING_VERSION_UNKNOWN,
             )
-            told += 1
-    assert told > 0 or name != "a.mcap"
+            reported += 1
+    assert reported > 0 or name != "a.mcap"
 
 
 # -- the command

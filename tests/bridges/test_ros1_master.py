@@ -294,12 +294,12 @@ def test_who_can_reach_it(
         assert listening(parent(master)) == {(address, port) for port in ports}
         process.send_signal(signal.SIGINT)
         output, _ = process.communicate(timeout=PATIENCE)
-    told = re.search(r"open to other computers without a password: ports (.*)", output)
+    received = re.search(r"open to other computers without a password: ports (.*)", output)
     if address == "127.0.0.1":
-        assert told is None
+        assert received is None
     else:
-        assert told is not None
-        assert {int(port) for port in told[1].split(", ")} == {made.port, *ports}
+        assert received is not None
+        assert {int(port) for port in received[1].split(", ")} == {made.port, *ports}
 
 
 def test_a_remote_master_that_does_not_answer_is_an_error(

@@ -205,7 +205,7 @@ def test_a_goal_is_followed_and_published(bridged: Ros2Bridged, peer: Peer) -> N
     status, ended = result(peer, identity)
     assert (status, ended.error_code) == (SUCCEEDED, 0)
     assert position(bridged, "a_joint") == pytest.approx(0.5, abs=0.02)
-    told = wait_for(
+    reported = wait_for(
         lambda: [
             each
             for each in peer.messages(f"{ARM}/_action/feedback", feedback)
@@ -213,8 +213,8 @@ def test_a_goal_is_followed_and_published(bridged: Ros2Bridged, peer: Peer) -> N
         ],
         "feedback",
     )
-    assert told[0].feedback.joint_names == list(JOINTS)
-    assert len(told[0].feedback.desired.positions) == 2
+    assert reported[0].feedback.joint_names == list(JOINTS)
+    assert len(reported[0].feedback.desired.positions) == 2
 
     def states() -> list[int]:
         return [

@@ -23,7 +23,7 @@ pytestmark = [
 ]
 
 
-def told(client: str, domain: int, seconds: float) -> dict[str, list[str]]:
+def reported(client: str, domain: int, seconds: float) -> dict[str, list[str]]:
     """What the peer prints: words by the first word of the line."""
     done = subprocess.run(
         [sys.executable, PEER, client, str(domain)],
@@ -45,7 +45,7 @@ def bridged(monkeypatch: pytest.MonkeyPatch) -> Iterator[Ros2Bridged]:
 
 
 def test_it_reads_drives_spawns_and_resets(bridged: Ros2Bridged) -> None:
-    said = told("cart", DOMAIN + 2, 500)
+    said = reported("cart", DOMAIN + 2, 500)
     assert said["spawn"][0] == "True", said
     assert "crate" in bridged.simulation.models
     count, x = said["odometry"]
@@ -66,7 +66,7 @@ def test_it_sends_goals_and_cancels_one(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN + 6))
     bridged = Ros2Bridged(robot=False, prepare=spawn_arm(tmp_path))
     try:
-        said = told("grip", DOMAIN + 6, 400)
+        said = reported("grip", DOMAIN + 6, 400)
     finally:
         bridged.close()
     assert said["goal"] == ["True"], said

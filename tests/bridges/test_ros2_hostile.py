@@ -267,11 +267,15 @@ def test_nobody_has_us_send_to_somebody_else(bridged: Ros2Bridged, sender: socke
         prefix = b"\x01\x08" + bytes(10)
         address = (("192.0.2.1", 4711),)
         data = ParticipantData(prefix=prefix, meta=address, user=address)
-        told = encode_participant(data, domain=DOMAIN + 3)
+        reported = encode_participant(data, domain=DOMAIN + 3)
         head = wire.data_head(
-            reader=wire.UNKNOWN, writer=discovery.SPDP_WRITER, number=1, inline=b"", size=len(told)
+            reader=wire.UNKNOWN,
+            writer=discovery.SPDP_WRITER,
+            number=1,
+            inline=b"",
+            size=len(reported),
         )
-        sender.send(wire.message(prefix, head, told))
+        sender.send(wire.message(prefix, head, reported))
         settle(bridged)
         assert participant._remotes.by_prefix[prefix].address == ("127.0.0.1", 4711)
         # Nor does anybody say farewell for another.
@@ -413,8 +417,8 @@ def test_who_asks_for_all_again_and_again_gets_it_at_a_bounded_pace() -> None:
     begin = time.monotonic()
     for count in range(2000):
         missing = tuple(range(1, 257))
-        told = wire.NackFrag(reader[12:], guid[12:], 1, missing)
-        writer.take_nack_frag(reader, told)
+        reported = wire.NackFrag(reader[12:], guid[12:], 1, missing)
+        writer.take_nack_frag(reader, reported)
         writer.take_acknack(reader, wire.Acknack(reader[12:], guid[12:], 1, (1,), count, False))
         outbox.tick()
     passed = time.monotonic() - begin
@@ -476,7 +480,7 @@ class Rude:
         for reader in self.readers:
             for guid, proxy in reader.proxies.items():
                 first = max(1, proxy.next - 255)
-                told = wire.acknack(
+                reported = wire.acknack(
                     reader=reader.endpoint.guid[12:],
                     writer=guid[12:],
                     base=first,
@@ -484,7 +488,7 @@ class Rude:
                     count=self._count,
                     final=False,
                 )
-                message = wire.message(self._participant.prefix, told, to=guid[:12])
+                message = wire.message(self._participant.prefix, reported, to=guid[:12])
                 self._participant._send((message,), proxy.address)
 
     def vanish(self) -> None:
@@ -541,7 +545,7 @@ def test_a_heartbeat_of_astronomical_numbers_costs_nothing(
     settle(bridged)
     before = memory()
     for count in range(200):
-        told = wire.heartbeat(
+        reported = wire.heartbeat(
             reader=discovery.PUBLICATIONS_READER,
             writer=discovery.PUBLICATIONS_WRITER,
             first=1,
@@ -549,7 +553,7 @@ def test_a_heartbeat_of_astronomical_numbers_costs_nothing(
             count=count,
             final=False,
         )
-        sender.send(wire.message(prefix, told))
+        sender.send(wire.message(prefix, reported))
         gap = wire.gap(
             reader=discovery.PUBLICATIONS_READER,
             writer=discovery.PUBLICATIONS_WRITER,

@@ -112,12 +112,12 @@ def test_states_are_set_and_got(bridged: Ros2Bridged, peer: Peer) -> None:
         assert peer.call(
             f"{prefix}/set_entity_state", "gazebo_msgs/srv/SetEntityState", {"state": state}
         ).success
-        told = peer.call(
+        reported = peer.call(
             f"{prefix}/get_entity_state", "gazebo_msgs/srv/GetEntityState", {"name": "rosbots"}
         )
-        assert told.success
-        assert told.state.pose.position.x == pytest.approx(-2.0, abs=1e-3)
-        assert told.state.pose.position.y == pytest.approx(1.5, abs=1e-3)
+        assert reported.success
+        assert reported.state.pose.position.x == pytest.approx(-2.0, abs=1e-3)
+        assert reported.state.pose.position.y == pytest.approx(1.5, abs=1e-3)
     link = peer.call(
         "/get_entity_state",
         "gazebo_msgs/srv/GetEntityState",
@@ -130,14 +130,14 @@ def test_states_are_set_and_got(bridged: Ros2Bridged, peer: Peer) -> None:
 
 
 def test_properties_are_returned_and_set(bridged: Ros2Bridged, peer: Peer) -> None:
-    told = peer.call(
+    reported = peer.call(
         "/get_model_properties", "gazebo_msgs/srv/GetModelProperties", {"model_name": "rosbots"}
     )
-    assert told.success, told.status_message
-    assert "rosbots::camera_link" in told.body_names
+    assert reported.success, reported.status_message
+    assert "rosbots::camera_link" in reported.body_names
     (cart,) = [placed for placed in bridged.simulation.scene.models if placed.name == "rosbots"]
     joint = next(one.name for one in cart.description.joints if one.type == "continuous")
-    assert joint in told.joint_names
+    assert joint in reported.joint_names
     done = peer.call(
         "/set_joint_properties",
         "gazebo_msgs_ros2/srv/SetJointProperties",
@@ -198,8 +198,8 @@ def test_steps_are_made_by_an_action(bridged: Ros2Bridged, peer: Peer) -> None:
         return identity
 
     def ended(identity: dict[str, Any]) -> tuple[int, int]:
-        told = peer.call(f"{base}/get_result", f"{kind}_GetResult", {"goal_id": identity})
-        return told.status, told.result.result.result
+        reported = peer.call(f"{base}/get_result", f"{kind}_GetResult", {"goal_id": identity})
+        return reported.status, reported.result.result.result
 
     aborted, succeeded, cancelled = 6, 4, 5
     assert ended(send(10)) == (aborted, 4)  # RESULT_OPERATION_FAILED: it is not paused
@@ -212,7 +212,7 @@ def test_steps_are_made_by_an_action(bridged: Ros2Bridged, peer: Peer) -> None:
         identity = send(45)
         assert ended(identity) == (succeeded, 1)
         assert simulation.current_step == before + 45
-        told = wait_for(
+        reported = wait_for(
             lambda: (
                 found
                 if len(found := peer.messages(f"{base}/feedback", f"{kind}_FeedbackMessage")) == 45
@@ -220,9 +220,9 @@ def test_steps_are_made_by_an_action(bridged: Ros2Bridged, peer: Peer) -> None:
             ),
             "all feedback",
         )
-        assert [(one.feedback.completed_steps, one.feedback.remaining_steps) for one in told] == [
-            (made, 45 - made) for made in range(1, 46)
-        ]
+        assert [
+            (one.feedback.completed_steps, one.feedback.remaining_steps) for one in reported
+        ] == [(made, 45 - made) for made in range(1, 46)]
         endless = send(10**12)
         assert ended(send(1)) == (aborted, 4)
         peer.call(
@@ -269,10 +269,10 @@ def test_entities_come_and_go_by_simulation_interfaces(bridged: Ros2Bridged, pee
         },
     )
     assert moved.result.result == 1, moved.result.error_message
-    told = peer.call(
+    reported = peer.call(
         "/gz_server/get_entity_state", f"{package}/GetEntityState", {"entity": "crate"}
     )
-    assert told.state.pose.position.x == pytest.approx(7.0, abs=1e-2)
+    assert reported.state.pose.position.x == pytest.approx(7.0, abs=1e-2)
     nobody = peer.call("/gz_server/delete_entity", f"{package}/DeleteEntity", {"entity": "nobody"})
     assert nobody.result.result == 2  # RESULT_NOT_FOUND
     assert nobody.result.error_message == unknown(bridged, "nobody")
@@ -307,8 +307,8 @@ def test_who_has_the_first_simulation_interfaces_is_answered_in_them(
         (f"{older}/GetSpawnables", "uri"),
         ("simulation_interfaces/srv/GetSpawnables", ""),
     ):
-        told = peer.call("/gz_server/get_spawnables", name, {}, hashes=True).spawnables
-        uris = [getattr(each, field) if field else each.entity_resource.uri for each in told]
+        reported = peer.call("/gz_server/get_spawnables", name, {}, hashes=True).spawnables
+        uris = [getattr(each, field) if field else each.entity_resource.uri for each in reported]
         assert any(uri.endswith("/rosbots.xacro") for uri in uris)
 
 
@@ -358,7 +358,7 @@ def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer:
     assert results[2].reason
     wait_for(lambda: bridged.simulation.speed == 2.0, "the speed that was set")
 
-    def told() -> list[Any]:
+    def reported() -> list[Any]:
         """Earlier changes of the time by other tests may still be published."""
         return [
             event
@@ -366,7 +366,7 @@ def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer:
             if [each.name for each in event.changed_parameters] == ["real_time_factor"]
         ]
 
-    (event,) = wait_for(told, "the change told")
+    (event,) = wait_for(reported, "the change reported")
     assert event.node == "/gazebo"
     whole = peer.call(
         "/gazebo/set_parameters_atomically",
@@ -390,7 +390,7 @@ def test_parameters_that_something_else_changes_are_published_too(
     peer.subscribe("/parameter_events", events)
     simulation = bridged.simulation
 
-    def told() -> list[bool]:
+    def reported() -> list[bool]:
         """How often time is said to be held, with repetitions."""
         return [
             each.value.bool_value
@@ -407,10 +407,10 @@ def test_parameters_that_something_else_changes_are_published_too(
         # The first ones may go before the two know each other.
         def seen() -> bool:
             hold(held=simulation.run_state is RunState.RUNNING)
-            return len(told()) > 2
+            return len(reported()) > 2
 
         wait_for(seen, "a change that nobody set as a parameter")
-        assert all(a != b for a, b in itertools.pairwise(told()))
+        assert all(a != b for a, b in itertools.pairwise(reported()))
     finally:
         hold(held=False)
         peer.close()

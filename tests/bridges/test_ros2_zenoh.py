@@ -202,9 +202,9 @@ def test_services_answer_with_what_was_asked_by(bridged: Ros2Bridged, session: A
     replies = list(session.get(PAUSE, payload=b"\0\1\0\0\0", attachment=attachment, timeout=20.0))
     assert bridged.simulation.run_state.value == "paused"
     (reply,) = replies
-    told = reply.ok.attachment.to_bytes()
-    assert struct.unpack_from("<q", told) == (41,)
-    assert told[16:] == b"\x10who asks for it."
+    reported = reply.ok.attachment.to_bytes()
+    assert struct.unpack_from("<q", reported) == (41,)
+    assert reported[16:] == b"\x10who asks for it."
     bridged.simulation.post(bridged.simulation.resume)
 
 

@@ -28,7 +28,7 @@ def arm(spoil):
 
 
 @pytest.fixture
-def told(bench, tmp_path):
+def received(bench, tmp_path):
     """What the rules of controllers say of a robot and a file that the user names."""
 
     def tell(text, yaml, name="arm.yaml"):
@@ -39,30 +39,30 @@ def told(bench, tmp_path):
     return tell
 
 
-def test_a_file_without_a_fault_gives_no_finding(arm, spoil, told):
-    assert told(arm, ARM) == []
+def test_a_file_without_a_fault_gives_no_finding(arm, spoil, received):
+    assert received(arm, ARM) == []
     wheels = [
         transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
         for side in ("left", "right")
     ]
-    assert told(spoil(ROS1, *wheels), WHEELS) == []
+    assert received(spoil(ROS1, *wheels), WHEELS) == []
 
 
 @pytest.mark.parametrize("case", IN_CONTROLLERS.values(), ids=IN_CONTROLLERS)
-def test_a_fault_in_a_file_is_found_and_its_advice_mends_it(case, arm, told, take):
+def test_a_fault_in_a_file_is_found_and_its_advice_mends_it(case, arm, received, take):
     rule, (old, new), line, advice = case
     assert old in ARM
     wrong = ARM.replace(old, new)
-    (finding,) = told(arm, wrong)
+    (finding,) = received(arm, wrong)
     assert finding.code.name == rule
     assert finding.severity == ("warning" if "broadcaster" in new else "error")
     assert (finding.origin.line, finding.origin.file.endswith("arm.yaml")) == (line, True)
     assert advice in finding.instead
-    assert told(arm, take(wrong, finding)) == []
+    assert received(arm, take(wrong, finding)) == []
 
 
-def test_a_type_that_is_not_simulated_is_a_note(arm, told):
-    (finding,) = told(arm, ARM.replace("effort_controllers/JointPosition", "my_own/Wobble"))
+def test_a_type_that_is_not_simulated_is_a_note(arm, received):
+    (finding,) = received(arm, ARM.replace("effort_controllers/JointPosition", "my_own/Wobble"))
     assert (finding.code.name, finding.severity, finding.instead) == (
         "controller-type-unknown",
         "info",
@@ -70,52 +70,54 @@ def test_a_type_that_is_not_simulated_is_a_note(arm, told):
     )
 
 
-def test_a_joint_without_a_transmission_is_given_one(spoil, told):
+def test_a_joint_without_a_transmission_is_given_one(spoil, received):
     text = spoil(ROS1)
-    (finding,) = told(text, ARM)
+    (finding,) = received(text, ARM)
     assert finding.code.name == "controller-interface-mismatch"
     assert finding.origin.line == 3
-    assert told(text.replace("</robot>", finding.instead + "</robot>"), ARM) == []
+    assert received(text.replace("</robot>", finding.instead + "</robot>"), ARM) == []
 
 
-def test_a_transmission_with_another_interface_is_reported_at_its_line(spoil, told, take, line_of):
+def test_a_transmission_with_another_interface_is_reported_at_its_line(
+    spoil, received, take, line_of
+):
     text = spoil(ROS1, transmission("arm_joint", "hardware_interface/PositionJointInterface"))
-    (finding,) = told(text, ARM)
+    (finding,) = received(text, ARM)
     assert finding.code.name == "controller-interface-mismatch"
     assert finding.origin.line == line_of(text, "<hardwareInterface>")
-    assert told(take(text, finding), ARM) == []
+    assert received(take(text, finding), ARM) == []
     # Another controller of the file has what the transmission offers: it may be the one that runs.
     other = "other:\n  type: position_controllers/JointPositionController\n  joint: arm_joint\n"
-    assert told(text, ARM + other) == []
+    assert received(text, ARM + other) == []
 
 
-def test_hardware_of_another_kind_may_offer_anything(spoil, told):
+def test_hardware_of_another_kind_may_offer_anything(spoil, received):
     own = (ROS1[0], ROS1[1].replace("/>", "><robotSimType>my/Sim</robotSimType></plugin>", 1))
-    assert told(spoil(own), ARM) == []
+    assert received(spoil(own), ARM) == []
 
 
-def test_two_controllers_of_one_joint_are_a_note(arm, told):
-    (finding,) = told(arm, ARM + ARM.replace("arm:", "other:"))
+def test_two_controllers_of_one_joint_are_a_note(arm, received):
+    (finding,) = received(arm, ARM + ARM.replace("arm:", "other:"))
     assert (finding.code.name, finding.severity) == ("joint-claimed-twice", "info")
     assert (finding.values["other"], finding.values["controller"]) == ("arm", "other")
     assert finding.origin.line == 7
     # Of two types one is the other's alternative.
     other = "other:\n  type: effort_controllers/JointEffortController\n  joint: arm_joint\n"
-    assert "joint-claimed-twice" not in [each.code.name for each in told(arm, ARM + other)]
+    assert "joint-claimed-twice" not in [each.code.name for each in received(arm, ARM + other)]
 
 
-def test_sizes_of_wheels_are_reported_in_the_files_line(spoil, told, take):
+def test_sizes_of_wheels_are_reported_in_the_files_line(spoil, received, take):
     wheels = [
         transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
         for side in ("left", "right")
     ]
     text = spoil(ROS1, *wheels)
     wrong = WHEELS.replace("0.4 ", "0.5 ").replace("0.08", "0.16")
-    apart, radius = told(text, wrong)
+    apart, radius = received(text, wrong)
     assert (apart.code.name, apart.origin.line) == ("wheel-separation-mismatch", 5)
     assert apart.instead == "wheel_separation: 0.4  # between the tyres"
     assert (radius.code.name, radius.origin.line) == ("wheel-diameter-mismatch", 6)
-    assert told(text, take(take(wrong, apart), radius)) == []
+    assert received(text, take(take(wrong, apart), radius)) == []
 
 
 ROS2 = """controller_manager:
@@ -139,33 +141,33 @@ def system(*commands):
     )
 
 
-def test_a_command_that_ros2_control_does_not_offer_is_added(spoil, told, take):
-    assert told(spoil(system("position")), ROS2) == []
+def test_a_command_that_ros2_control_does_not_offer_is_added(spoil, received, take):
+    assert received(spoil(system("position")), ROS2) == []
     text = spoil(system("velocity"))
-    (finding,) = told(text, ROS2)
+    (finding,) = received(text, ROS2)
     assert finding.code.name == "controller-interface-mismatch"
     assert finding.instead == '<command_interface name="position"/>'
-    assert told(take(text, finding), ROS2) == []
+    assert received(take(text, finding), ROS2) == []
 
 
-def test_a_trajectory_by_effort_needs_gains(spoil, told, take):
+def test_a_trajectory_by_effort_needs_gains(spoil, received, take):
     text = spoil(system("effort"))
     yaml = ROS2.replace("command_interfaces: [position]", "command_interfaces: [effort]")
-    (finding,) = told(text, yaml)
+    (finding,) = received(text, yaml)
     assert (finding.code.name, finding.severity) == ("controller-gains-missing", "warning")
     where = "      type: joint_trajectory_controller/JointTrajectoryController\n"
     good = yaml + f"    {finding.instead}\n"
     assert where in good
-    assert told(text, good) == []
+    assert received(text, good) == []
 
 
-def test_a_type_of_ros1_in_a_file_of_ros2(spoil, told, take):
+def test_a_type_of_ros1_in_a_file_of_ros2(spoil, received, take):
     yaml = ROS2.replace("joint_trajectory_controller/", "position_controllers/")
     text = spoil(system("position"))
-    (finding,) = told(text, yaml)
+    (finding,) = received(text, yaml)
     assert finding.code.name == "controller-type-unknown"
     assert finding.values["meant"] == "joint_trajectory_controller/JointTrajectoryController"
-    assert told(text, take(yaml, finding)) == []
+    assert received(text, take(yaml, finding)) == []
 
 
 def test_a_file_that_lies_nearby_is_checked_where_it_is_of_this_robot(bench, arm, tmp_path):
@@ -184,15 +186,15 @@ def test_a_file_that_lies_nearby_is_checked_where_it_is_of_this_robot(bench, arm
     assert not [f for f in bench.report(without).findings if f.code.name in RULES]
 
 
-def test_a_file_that_is_missing_or_damaged_is_reported(arm, told, bench, tmp_path):
-    (finding,) = told(arm, "arm: [")
+def test_a_file_that_is_missing_or_damaged_is_reported(arm, received, bench, tmp_path):
+    (finding,) = received(arm, "arm: [")
     assert (finding.code.name, finding.origin.line) == ("controllers-file-unreadable", 1)
     missing = bench.report(arm, controller_files=[tmp_path / "no.yaml"]).findings
     assert [finding.code.name for finding in missing] == ["controllers-file-unreadable"]
 
 
-def test_one_controller_may_be_a_file(arm, told):
+def test_one_controller_may_be_a_file(arm, received):
     lines = [line.removeprefix("  ") for line in ARM.splitlines()[1:]]
-    assert told(arm, "\n".join(lines)) == []
-    (finding,) = told(arm, "\n".join(lines).replace("arm_joint", "arm_jiont"))
+    assert received(arm, "\n".join(lines)) == []
+    (finding,) = received(arm, "\n".join(lines).replace("arm_joint", "arm_jiont"))
     assert finding.origin.line == 2

@@ -139,7 +139,7 @@ STATED = [(name, tag) for name, tags in DRIVES.items() for tag in tags if tag in
 
 
 @pytest.fixture
-def told(bench):
+def reported(bench):
     """What the rules of sizes say of a text."""
     return lambda text, **options: [
         finding
@@ -149,19 +149,19 @@ def told(bench):
 
 
 @pytest.mark.parametrize("name", DRIVES)
-def test_the_cars_own_sizes_are_no_fault(told, name):
-    assert told(car(plugin(name, **DRIVES[name]))) == []
+def test_the_cars_own_sizes_are_no_fault(reported, name):
+    assert reported(car(plugin(name, **DRIVES[name]))) == []
 
 
 @pytest.mark.parametrize(("name", "tag"), STATED)
-def test_a_size_that_is_not_the_cars_is_reported_with_its_own(told, take, line_of, name, tag):
+def test_a_size_that_is_not_the_cars_is_reported_with_its_own(reported, take, line_of, name, tag):
     # Below the car's own: a skid's separation may be wider.
     wrong = car(plugin(name, **{**DRIVES[name], tag: 0.8 * DRIVES[name][tag]}))
-    (finding,) = told(wrong)
+    (finding,) = reported(wrong)
     assert finding.code.name == SIZES[tag]
     assert finding.origin.line == line_of(wrong, f"<{tag}>")
     assert finding.instead == f"<{tag}>{DRIVES[name][tag]:g}</{tag}>"
-    assert told(take(wrong, finding)) == []
+    assert reported(take(wrong, finding)) == []
 
 
 def turned(text):
@@ -176,20 +176,20 @@ def turned(text):
 
 
 @pytest.mark.parametrize("name", DRIVES)
-def test_a_car_that_faces_along_y_is_measured_along_its_axles(told, bench, name):
+def test_a_car_that_faces_along_y_is_measured_along_its_axles(reported, bench, name):
     text = turned(car(plugin(name, **DRIVES[name])))
-    assert told(text) == []
+    assert reported(text) == []
     for code in ("wheels-swapped", "wheel-axis-misaligned"):
         assert not bench.find(text, code)
 
 
 @pytest.mark.parametrize(("name", "tag"), STATED)
-def test_a_wrong_size_of_a_car_that_faces_along_y_is_corrected(told, take, name, tag):
+def test_a_wrong_size_of_a_car_that_faces_along_y_is_corrected(reported, take, name, tag):
     wrong = turned(car(plugin(name, **{**DRIVES[name], tag: 0.8 * DRIVES[name][tag]})))
-    (finding,) = told(wrong)
+    (finding,) = reported(wrong)
     assert finding.code.name == SIZES[tag]
     assert finding.values["measured"] == pytest.approx(DRIVES[name][tag])
-    assert told(take(wrong, finding)) == []
+    assert reported(take(wrong, finding)) == []
 
 
 def test_the_axes_define_the_sides_of_a_car_that_faces_along_y(bench):
@@ -209,20 +209,20 @@ def test_the_axes_define_the_sides_of_a_car_that_faces_along_y(bench):
 @pytest.mark.parametrize(
     ("name", "tag"), [each for each in STATED if each[0] != "libgazebo_ros_kobuki.so"]
 )
-def test_a_size_that_is_not_written_is_the_plugins_default(told, take, name, tag):
+def test_a_size_that_is_not_written_is_the_plugins_default(reported, take, name, tag):
     """None of the defaults is the car's, but for the kingpins', which are left out here."""
     tags = {key: value for key, value in DRIVES[name].items() if key != tag}
     text = car(plugin(name, **tags))
     skids = name in ("libgazebo_ros_skid_steer_drive.so", "libdiffdrive_plugin_multi_wheel.so")
     if skids and tag == "wheelSeparation":
-        assert told(text) == []  # 0.4 m or 0.34 m for 0.3 m: wider, as a skid's may be
+        assert reported(text) == []  # 0.4 m or 0.34 m for 0.3 m: wider, as a skid's may be
         return
-    (finding,) = told(text)
+    (finding,) = reported(text)
     assert finding.place == "inside"
-    assert told(take(text, finding)) == []
+    assert reported(take(text, finding)) == []
 
 
-def test_a_skid_steers_default_separation_is_its_plugins(told):
+def test_a_skid_steers_default_separation_is_its_plugins(reported):
     """The plugin uses 0.4 m without the tag, which is too little for a track of 0.5 m."""
     tags = {key: value for key, value in SKID.items() if key != "wheelSeparation"}
     text = car(plugin("libgazebo_ros_skid_steer_drive.so", **tags))
@@ -231,21 +231,21 @@ def test_a_skid_steers_default_separation_is_its_plugins(told):
             f'xyz="0 {left * (TRACK - KINGPINS) / 2} 0"', f'xyz="0 {left * 0.12} 0"'
         )
         text = text.replace(f'xyz="-0.25 {left * TRACK / 2} 0"', f'xyz="-0.25 {left * 0.25} 0"')
-    (finding,) = told(text)
+    (finding,) = reported(text)
     assert finding.values["stated"] == 0.4
     assert finding.values["measured"] == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize("missing", [("leftFrontJoint", "leftRearJoint"), tuple(SKID)[:4]])
-def test_sizes_are_compared_with_the_joints_that_a_plugin_uses_by_default(told, take, missing):
+def test_sizes_are_compared_with_the_joints_that_a_plugin_uses_by_default(reported, take, missing):
     """The default joints are named left_front_joint and so on."""
     tags = {name: value for name, value in SKID.items() if name not in missing}
     text = car(plugin("libgazebo_ros_skid_steer_drive.so", **{**tags, "wheelSeparation": 0.2}))
     text = re.sub(r"(front|rear)_(left|right)_joint", r"\2_\1_joint", text)
-    (finding,) = told(text)
+    (finding,) = reported(text)
     assert finding.code.name == "wheel-separation-mismatch"
     assert finding.values["measured"] == pytest.approx(TRACK)
-    assert told(take(text, finding)) == []
+    assert reported(take(text, finding)) == []
 
 
 def test_only_the_differential_drive_has_another_name_for_its_torque(bench):
@@ -259,13 +259,13 @@ def test_only_the_differential_drive_has_another_name_for_its_torque(bench):
 
 
 @pytest.mark.parametrize("base", [0.1, TRACK, BASE])
-def test_skidding_wheels_may_be_said_to_be_as_far_apart_as_friction_asks(told, base):
+def test_skidding_wheels_may_be_said_to_be_as_far_apart_as_friction_asks(reported, base):
     """t (1 + (b/t)²) turns it rightly, and a quarter more is granted; the least is 2.5 t."""
     name = "libgazebo_ros_skid_steer_drive.so"
     most = max(2.5 * TRACK, 1.25 * TRACK * (1 + (base / TRACK) ** 2))
 
     def said(apart):
-        return told(car(plugin(name, **{**SKID, "wheelSeparation": apart}), base))
+        return reported(car(plugin(name, **{**SKID, "wheelSeparation": apart}), base))
 
     for fine in (TRACK, 0.999 * most):
         assert said(fine) == []
@@ -275,7 +275,7 @@ def test_skidding_wheels_may_be_said_to_be_as_far_apart_as_friction_asks(told, b
         assert finding.instead == f"<wheelSeparation>{TRACK:g}</wheelSeparation>"
 
 
-def test_the_driven_wheels_on_both_axles_of_a_car_do_not_skid(told):
+def test_the_driven_wheels_on_both_axles_of_a_car_do_not_skid(reported):
     """Unlike those of a skid-steered robot, they need no larger separation."""
     wheels = "".join(
         f"<{side}_joint>{end}_{side}_joint</{side}_joint>"
@@ -286,11 +286,11 @@ def test_the_driven_wheels_on_both_axles_of_a_car_do_not_skid(told):
         name: ACKERMANN[name] for name in ACKERMANN if name not in ("left_joint", "right_joint")
     }
     text = plugin("gz-sim-ackermann-steering-system", **{**stated, "wheel_separation": 1.5 * TRACK})
-    (finding,) = told(car(text.replace("</plugin>", wheels + "</plugin>")))
+    (finding,) = reported(car(text.replace("</plugin>", wheels + "</plugin>")))
     assert finding.instead == f"<wheel_separation>{TRACK:g}</wheel_separation>"
 
 
-def test_the_distance_of_the_joints_of_wheels_beside_them_is_a_note(told):
+def test_the_distance_of_the_joints_of_wheels_beside_them_is_a_note(reported):
     """The tyres of the rear axle are 0.05 m further out than their joints, and turn the robot."""
     drive = {**REAR, "wheel_diameter": 2 * RADIUS}
 
@@ -303,7 +303,7 @@ def test_the_distance_of_the_joints_of_wheels_beside_them_is_a_note(told):
                 f'<origin xyz="0 {left} 0" rpy="1.5707963 0 0"/>',
                 1,
             )
-        return told(text)
+        return reported(text)
 
     (note,) = said(TRACK)
     assert note.severity == "info" and note.values["measured"] == pytest.approx(TRACK + 0.1)
@@ -313,7 +313,7 @@ def test_the_distance_of_the_joints_of_wheels_beside_them_is_a_note(told):
     assert finding.instead == f"<wheel_separation>{TRACK + 0.1:g}</wheel_separation>"
 
 
-def test_a_pair_of_wheels_has_its_own_separation(told):
+def test_a_pair_of_wheels_has_its_own_separation(reported):
     pairs = (
         '<plugin name="p" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2'
         "</num_wheel_pairs><left_joint>rear_left_joint</left_joint><left_joint>front_left_joint"
@@ -321,7 +321,7 @@ def test_a_pair_of_wheels_has_its_own_separation(told):
         "</right_joint>\n<wheel_separation>0.3</wheel_separation>\n"
         "<wheel_separation>0.2</wheel_separation><wheel_diameter>0.2</wheel_diameter></plugin>"
     )
-    (finding,) = told(car(pairs))
+    (finding,) = reported(car(pairs))
     assert finding.instead == "<wheel_separation>0.3</wheel_separation>"
     assert finding.values["stated"] == pytest.approx(0.2)
 
@@ -406,21 +406,21 @@ FILES = {
 
 
 @pytest.mark.parametrize("case", FILES.values(), ids=FILES)
-def test_controllers_sizes_are_those_of_the_car(told, take, tmp_path, case):
+def test_controllers_sizes_are_those_of_the_car(reported, take, tmp_path, case):
     text, sizes = case
     path = tmp_path / "car.yaml"
     path.write_text(text)
-    assert told(car(), controller_files=[path]) == []
+    assert reported(car(), controller_files=[path]) == []
     for size in sizes:
         line = next(line for line in text.splitlines() if line.strip().startswith(f"{size}:"))
         value = float(line.partition(":")[2])
         wrong = text.replace(line, line.replace(f": {value}", f": {1.3 * value:.4g}"))
         path.write_text(wrong)
-        (finding,) = told(car(), controller_files=[path])
+        (finding,) = reported(car(), controller_files=[path])
         assert finding.instead == f"{size}: {value:.6g}", size
         assert finding.origin.line == text.splitlines().index(line) + 1
         path.write_text(take(wrong, finding))
-        assert told(car(), controller_files=[path]) == []
+        assert reported(car(), controller_files=[path]) == []
 
 
 @pytest.mark.parametrize("text", [ROS1_DIFF, ROS2_DIFF])
@@ -436,22 +436,22 @@ def test_swapped_wheels_of_a_controller_are_found(bench, tmp_path, text):
     assert (finding.origin.file, finding.origin.line) == (str(path), line)
 
 
-def test_the_sizes_of_wheels_that_other_hardware_moves_are_not_compared(told, tmp_path):
+def test_the_sizes_of_wheels_that_other_hardware_moves_are_not_compared(reported, tmp_path):
     """SteerBotHardwareGazebo moves other joints than those that the controller commands."""
     path = tmp_path / "car.yaml"
     path.write_text(ROS1_STEERED.replace(f"_h: {BASE}", f"_h: {1.5 * BASE}"))
     tags = {"robotSimType": "steer_bot_hardware_gazebo/SteerBotHardwareGazebo"}
     other = plugin("libgazebo_ros_control.so", **tags)
     plain = plugin("libgazebo_ros_control.so")
-    (finding,) = told(car(plain), controller_files=[path])
+    (finding,) = reported(car(plain), controller_files=[path])
     assert finding.code is WHEEL_BASE_MISMATCH
-    assert told(car(other), controller_files=[path]) == []
+    assert reported(car(other), controller_files=[path]) == []
 
 
 @pytest.mark.parametrize("namespace", ["", "my_car"])
 @pytest.mark.parametrize("joint", ["rear_left_joint", "rear_joint"])
 def test_the_radius_of_wheels_that_other_hardware_moves_is_compared(
-    told, tmp_path, joint, namespace
+    reported, tmp_path, joint, namespace
 ):
     """The joint that the controller commands need not be in the robot."""
     path, hardware = tmp_path / "car.yaml", tmp_path / "hardware.yaml"
@@ -462,31 +462,31 @@ def test_the_radius_of_wheels_that_other_hardware_moves_is_compared(
     robot = car(plugin("libgazebo_ros_control.so", **tags))
     text = ROS1_STEERED.replace("rear_left_joint", joint)
     path.write_text(text)
-    assert told(robot, controller_files=[path, hardware]) == []
+    assert reported(robot, controller_files=[path, hardware]) == []
     path.write_text(text.replace(f"radius: {RADIUS}", f"radius: {2 * RADIUS}"))
-    (finding,) = told(robot, controller_files=[path, hardware])
+    (finding,) = reported(robot, controller_files=[path, hardware])
     assert finding.code is WHEEL_DIAMETER_MISMATCH
     assert finding.values["measured"] == pytest.approx(RADIUS)
 
 
-def test_the_passive_wheels_of_a_tricycle_are_one_axle(told, tmp_path):
+def test_the_passive_wheels_of_a_tricycle_are_one_axle(reported, tmp_path):
     """Without a second axle whose wheels are not driven, its wheelbase is unknown."""
     path = tmp_path / "car.yaml"
     path.write_text(ROS2_TRICYCLE.replace(f"wheelbase: {BASE}", f"wheelbase: {2 * BASE}"))
-    (finding,) = told(car(), controller_files=[path])
+    (finding,) = reported(car(), controller_files=[path])
     assert finding.values["measured"] == pytest.approx(BASE)
     middle = link("middle_wheel", WHEEL) + joint(
         "middle_joint", ("base_link", "middle_wheel"), "0.1 0 0", "0 1 0"
     )
     several = car().replace("<gazebo>", f"{middle}<gazebo>", 1)
-    assert told(several, controller_files=[path]) == []
+    assert reported(several, controller_files=[path]) == []
 
 
-def test_the_wheel_base_is_measured_between_the_axles_when_all_wheels_are_driven(told):
+def test_the_wheel_base_is_measured_between_the_axles_when_all_wheels_are_driven(reported):
     tags = {**ACKERMANN}
     text = plugin("gz-sim-ackermann-steering-system", **tags)
     more = "<left_joint>front_left_joint</left_joint><right_joint>front_right_joint</right_joint>"
-    assert told(car(text.replace("</plugin>", f"{more}</plugin>"))) == []
+    assert reported(car(text.replace("</plugin>", f"{more}</plugin>"))) == []
 
 
 @pytest.mark.parametrize(
@@ -496,34 +496,34 @@ def test_the_wheel_base_is_measured_between_the_axles_when_all_wheels_are_driven
         ("wheel_separation", TRACK, ("wheel_separation_multiplier",)),
     ],
 )
-def test_the_size_with_its_multiplier_is_compared(told, take, tmp_path, case):
+def test_the_size_with_its_multiplier_is_compared(reported, take, tmp_path, case):
     size, value, multipliers = case
     path = tmp_path / "car.yaml"
     twice = ROS2_DIFF.replace(f"{size}: {value}", f"{size}: {2 * value}")
     path.write_text(twice + "".join(f"    {name}: 0.5\n" for name in multipliers))
-    assert told(car(), controller_files=[path]) == []
+    assert reported(car(), controller_files=[path]) == []
     wrong = ROS2_DIFF + "".join(f"    {name}: 0.5\n" for name in multipliers)
     path.write_text(wrong)
-    (finding,) = told(car(), controller_files=[path])
+    (finding,) = reported(car(), controller_files=[path])
     assert finding.values["stated"] == pytest.approx(value / 2)
     path.write_text(take(wrong, finding))
-    assert told(car(), controller_files=[path]) == []
+    assert reported(car(), controller_files=[path]) == []
 
 
-def test_a_negative_multiplier_of_a_side_does_not_change_the_radius(told, tmp_path):
+def test_a_negative_multiplier_of_a_side_does_not_change_the_radius(reported, tmp_path):
     path = tmp_path / "car.yaml"
     path.write_text(ROS2_DIFF + "    right_wheel_radius_multiplier: -1.0\n")
-    assert told(car(), controller_files=[path]) == []
+    assert reported(car(), controller_files=[path]) == []
 
 
-def test_a_multiplier_without_a_size_is_that_of_the_measured_separation(told, take, tmp_path):
+def test_a_multiplier_without_a_size_is_that_of_the_measured_separation(reported, take, tmp_path):
     path = tmp_path / "car.yaml"
     wrong = ROS2_DIFF.replace(f"wheel_separation: {TRACK}", "wheel_separation_multiplier: 1.5")
     path.write_text(wrong)
-    (finding,) = told(car(), controller_files=[path])
+    (finding,) = reported(car(), controller_files=[path])
     assert finding.instead == "wheel_separation_multiplier: 1.0"
     path.write_text(take(wrong, finding))
-    assert told(car(), controller_files=[path]) == []
+    assert reported(car(), controller_files=[path]) == []
 
 
 def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tmp_path):

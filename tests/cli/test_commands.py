@@ -157,14 +157,14 @@ def test_services(cart):
 
 
 def test_what_is_reported_a_spawned_file_has_its_place(cart, tmp_path):
-    file = tmp_path / "told.urdf"
-    file.write_text("""<robot name="told"><link name="a"><inertial><mass value="1"/>
+    file = tmp_path / "reported.urdf"
+    file.write_text("""<robot name="reported"><link name="a"><inertial><mass value="1"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <gazebo><plugin name="p" filename="libnone.so"/></gazebo></robot>""")
     done = cart("spawn", str(file), "-x", "-7")
     assert f"{file}:3: warning: " in done.stderr and f"[{PLUGIN_UNKNOWN}]" in done.stderr
     assert done.stderr.count("warning:") == 1
-    cart("delete", "told")
+    cart("delete", "reported")
 
 
 def test_spawn_and_delete(cart):

@@ -117,9 +117,9 @@ def test_lights_of_one_name():
     world = _world('<light name="a" type="point"/>\n<light name="a" type="point"/>')
     with cw.World(world) as made:
         made.run(0.01)
-        (told,) = coded(made, NAME_TAKEN, renamed="a_1")
+        (reported,) = coded(made, NAME_TAKEN, renamed="a_1")
     assert [light.name for light in world.lights] == ["a", "a_1"]
-    assert str(told.origin) == "w:2" and told.severity == "warning"
+    assert str(reported.origin) == "w:2" and reported.severity == "warning"
 
 
 @pytest.mark.parametrize("form", ["sdf", "urdf"])

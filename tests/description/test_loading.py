@@ -71,8 +71,8 @@ def test_arguments():
 
 
 def test_arguments_of_what_is_no_xacro_are_reported():
-    (told,) = load_text(URDF, file="r.urdf", arguments={"n": "b"}).diagnostics
-    assert placed(told) == "r.urdf warning argument-unknown"
+    (reported,) = load_text(URDF, file="r.urdf", arguments={"n": "b"}).diagnostics
+    assert placed(reported) == "r.urdf warning argument-unknown"
 
 
 def test_robot_or_world(folder):

@@ -348,8 +348,8 @@ def test_nine_thousand_macro_calls_expand(folder):
 def test_unknown_argument_is_reported_with_the_declared_ones(folder):
     write("part.xacro", '<xacro:arg name="laser_enabled" default="1"/>', "")
     write("robot.xacro", '<xacro:include filename="part.xacro"/>')
-    (told,) = expanded(laser_enable="true").diagnostics
-    assert placed(told) == "robot.xacro warning argument-unknown laser_enabled"
+    (reported,) = expanded(laser_enable="true").diagnostics
+    assert placed(reported) == "robot.xacro warning argument-unknown laser_enabled"
     assert not expanded(laser_enabled="true").diagnostics
 
 
@@ -360,11 +360,11 @@ def test_messages_of_xacro_become_diagnostics(folder, capfd):
 <a b="${xacro.warning('look here')}"/>
 <xacro:include filename="no*.xacro"/>""",
     )
-    told = expanded().diagnostics
-    assert [placed(each) for each in told] == [
+    reported = expanded().diagnostics
+    assert [placed(each) for each in reported] == [
         f"robot.xacro:{line} warning xacro-message" for line in (2, 3, 4)
     ]
-    assert told[1].values == {"text": "look here"}
+    assert reported[1].values == {"text": "look here"}
     assert capfd.readouterr() == ("", "")
 
 
@@ -374,9 +374,9 @@ def test_messages_of_one_line_are_distinguished_by_their_text(folder):
         """<xacro:if value="${[xacro.warning('one')] and [xacro.warning('one')] and True}"/>
 <xacro:if value="${[xacro.warning('one')] and [xacro.warning('this is deprecated')] and True}"/>""",
     )
-    told = [(placed(each), each.values["text"]) for each in expanded().diagnostics]
+    reported = [(placed(each), each.values["text"]) for each in expanded().diagnostics]
     warning = "warning xacro-message"
-    assert told == [
+    assert reported == [
         (f"robot.xacro:2 {warning}", "one"),
         (f"robot.xacro:3 {warning}", "one"),
         (f"robot.xacro:3 {warning}", "this is deprecated"),
@@ -449,9 +449,9 @@ def test_what_is_deprecated_and_works_is_a_note(folder):
     write("robot.xacro", """<a r="${load_yaml('size.yaml')['radius']}"/>""")
     found = expanded()
     assert dict(found.root.children[0].attributes) == {"r": "0.3"}
-    (told,) = found.diagnostics
-    assert placed(told) == "robot.xacro:2 info xacro-deprecated xacro.load_yaml"
-    assert told.values["name"] == "load_yaml"
+    (reported,) = found.diagnostics
+    assert placed(reported) == "robot.xacro:2 info xacro-deprecated xacro.load_yaml"
+    assert reported.values["name"] == "load_yaml"
 
 
 def test_a_robot_keeps_the_values_of_its_arguments_given_or_not():
@@ -559,11 +559,11 @@ def test_tags_without_prefix_are_taken_as_ros_did_until_melodic(folder):
     assert [mount.tag, *(each.tag for each in mount.children)] == ["joint", "origin"]
     # Nothing else has the name of a macro's, or its parameters.
     assert [each.tag for each in plain] == ["camera", "include", "ball"]
-    told = [placed(each) for each in expansion.diagnostics]
-    assert told[1] == "robot.xacro:3 warning xacro-prefix xacro:property"
+    reported = [placed(each) for each in expansion.diagnostics]
+    assert reported[1] == "robot.xacro:3 warning xacro-prefix xacro:property"
     # Of calls, the first of each macro.
-    assert sum(each.endswith("xacro-prefix xacro:ball") for each in told) == 1
-    assert len(told) == 8
+    assert sum(each.endswith("xacro-prefix xacro:ball") for each in reported) == 1
+    assert len(reported) == 8
 
 
 def test_what_a_macro_makes_may_have_its_own_name(folder):

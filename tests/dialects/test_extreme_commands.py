@@ -225,16 +225,16 @@ def pushed(make):
 
 def test_a_push_that_diverges_takes_all_back_and_the_run_goes_on(pushed):
     assert abs(pushed.model("box").pose.z) < 10
-    told = coded(pushed, world_codes.SIMULATION_RECOVERED)
-    assert len(told) == 20
+    received = coded(pushed, world_codes.SIMULATION_RECOVERED)
+    assert len(received) == 20
     # Who sends such things must not fill the disk either.
-    assert sum(bool(each.values["states"]) for each in told) == 3
+    assert sum(bool(each.values["states"]) for each in received) == 3
 
 
 @pytest.mark.wording
 def test_the_last_divergence_that_is_reported_says_so(pushed):
-    told = coded(pushed, world_codes.SIMULATION_RECOVERED)
-    assert told[-1].hint.endswith("Further divergences are not reported.")
+    received = coded(pushed, world_codes.SIMULATION_RECOVERED)
+    assert received[-1].hint.endswith("Further divergences are not reported.")
 
 
 @pytest.mark.parametrize(

@@ -123,8 +123,8 @@ def wheeled(make, drive, tag):
         for name in names
     )
     if drive == "skid_steer_drive":
-        told = ("leftFrontJoint", "leftRearJoint", "rightFrontJoint", "rightRearJoint")
-        tag += "".join(f"<{t}>{name}</{t}>" for t, name in zip(told, names, strict=True))
+        reported = ("leftFrontJoint", "leftRearJoint", "rightFrontJoint", "rightRearJoint")
+        tag += "".join(f"<{t}>{name}</{t}>" for t, name in zip(reported, names, strict=True))
     return make.sdf(WHEELED.format(drive=drive, tag=tag, links=links, joints=joints))
 
 

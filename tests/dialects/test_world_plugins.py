@@ -8,7 +8,7 @@ from cartwheel.errors import CartwheelError
 from cartwheel.session import Session
 
 
-def told(filename):
+def reported(filename):
     text = (
         f'<sdf version="1.6"><world name="w"><plugin name="p" filename="{filename}"/></world></sdf>'
     )
@@ -26,7 +26,7 @@ def told(filename):
     ],
 )
 def test_a_plugin_that_does_nothing_is_reported(filename, code):
-    (found,) = told(filename)
+    (found,) = reported(filename)
     assert found.code is code
     assert found.values["name"] == filename
     assert bool(found.hint) == (code is devices.PLUGIN_UNKNOWN)
@@ -45,7 +45,7 @@ def test_a_plugin_that_does_nothing_is_reported(filename, code):
     ],
 )
 def test_what_is_built_in_is_not(filename):
-    assert not told(filename)
+    assert not reported(filename)
 
 
 @pytest.mark.parametrize("place", ["world", "model"])
@@ -70,10 +70,10 @@ DRIVE = """<plugin name="p" filename="gz-sim-diff-drive-system"><left_joint>left
 def test_a_plugin_that_cannot_be_made_costs_a_world_the_plugin():
     states = '<plugin name="s" filename="gz-sim-joint-state-publisher-system"/>'
     session = Session(load_text(WORLD.format(DRIVE + states), file="w.world"))
-    (told,) = [each for each in session.diagnostics if each.severity == "error"]
-    assert told.code is running.PLUGIN_LEFT_OUT
-    assert told.values["plugin"] == "gz-sim-diff-drive-system"
-    assert told.values["cause"] == devices.PLUGIN_JOINT_UNKNOWN.number
+    (reported,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert reported.code is running.PLUGIN_LEFT_OUT
+    assert reported.values["plugin"] == "gz-sim-diff-drive-system"
+    assert reported.values["cause"] == devices.PLUGIN_JOINT_UNKNOWN.number
     topics = {topic.name for topic in session.graph.topics()}
     assert any("joint_state" in name for name in topics)
     assert not any("cmd_vel" in name for name in topics)
@@ -95,8 +95,8 @@ def test_a_static_model_has_nothing_to_drive(name):
     drive = f"""<static>1</static><plugin name="p" filename="{name}"><left_joint>left</left_joint>
       <right_joint>left</right_joint></plugin>"""
     session = Session(load_text(WORLD.format(drive), file="w.world"))
-    (told,) = [each for each in session.diagnostics if each.severity == "error"]
-    assert told.values["cause"] == running.STATIC_MODEL_DRIVEN.number
+    (reported,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert reported.values["cause"] == running.STATIC_MODEL_DRIVEN.number
     session.close()
 
 
@@ -113,10 +113,10 @@ def test_a_sensor_that_lacks_something_costs_the_sensor():
     sensor = """<link name="c"><sensor name="nose" type="air_pressure"><air_pressure>
       <reference_altitude>low</reference_altitude></air_pressure></sensor></link>"""
     session = Session(load_text(WORLD.format(sensor), file="w.world"))
-    (told,) = [each for each in session.diagnostics if each.severity == "error"]
-    assert told.code is running.PLUGIN_LEFT_OUT
-    assert told.values["plugin"] == "nose"
-    assert told.values["cause"] == devices.PLUGIN_PARAMETER_INVALID.number
+    (reported,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert reported.code is running.PLUGIN_LEFT_OUT
+    assert reported.values["plugin"] == "nose"
+    assert reported.values["cause"] == devices.PLUGIN_PARAMETER_INVALID.number
     session.close()
 
 
@@ -137,8 +137,8 @@ def test_a_plugin_that_names_what_is_not_there_costs_itself_where_that_is_wanted
     empty = load_text('<sdf version="1.6"><world name="w"/></sdf>', file="w.world")
     session = Session(empty, lenient=True)
     session.spawn(load_text(text, file="r.sdf"))
-    (told,) = [each for each in session.diagnostics if each.severity == "error"]
-    assert told.code is running.PLUGIN_LEFT_OUT
-    assert told.values["cause"] == devices.PLUGIN_JOINT_UNKNOWN.number
-    assert told.origin is not None
+    (reported,) = [each for each in session.diagnostics if each.severity == "error"]
+    assert reported.code is running.PLUGIN_LEFT_OUT
+    assert reported.values["cause"] == devices.PLUGIN_JOINT_UNKNOWN.number
+    assert reported.origin is not None
     session.close()

@@ -131,8 +131,8 @@ def test_sources_outside_are_named(api, tmp_path):
 
 @pytest.mark.wording
 def test_the_option_that_allows_a_folder_is_named(api):
-    told = gz(api)("gz_server/get_available_worlds", additional_sources=["/etc"])
-    assert "allow_path=" in told.result.error_message
+    reported = gz(api)("gz_server/get_available_worlds", additional_sources=["/etc"])
+    assert "allow_path=" in reported.result.error_message
 
 
 @pytest.mark.parametrize("path", ["/etc/passwd", "../../secret.yaml"])

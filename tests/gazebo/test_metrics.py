@@ -20,24 +20,24 @@ def test_sensors_and_factor(make, gazebo, rosbots):
     begin = time.perf_counter()
     world.run(4.0)
     wall = time.perf_counter() - begin
-    told = box.drain()
-    assert len(told) == 20
-    factors = [message.real_time_factor for message in told]
+    reported = box.drain()
+    assert len(reported) == 20
+    factors = [message.real_time_factor for message in reported]
     # The factor of the whole is the harmonic mean of the parts, less what is at the ends.
     assert len(factors) / sum(1 / factor for factor in factors) == pytest.approx(
         4.0 / wall, rel=0.5
     )
-    last = {sensor.name: sensor for sensor in told[-1].sensors}
+    last = {sensor.name: sensor for sensor in reported[-1].sensors}
     bumper = next(sensor for name, sensor in last.items() if "bumper" in name)
     rates = [
         sensor.sim_update_rate
-        for message in told
+        for message in reported
         for sensor in message.sensors
         if sensor.name == bumper.name
     ]
     assert sum(rates) / len(rates) == pytest.approx(50.0, rel=0.02)
     assert bumper.real_update_rate == pytest.approx(
-        bumper.sim_update_rate * told[-1].real_time_factor, rel=1e-6
+        bumper.sim_update_rate * reported[-1].real_time_factor, rel=1e-6
     )
     # Nobody reads the camera.
     camera = next(sensor for name, sensor in last.items() if "camera" in name)
@@ -65,6 +65,6 @@ def test_a_reset_begins_anew(make, gazebo):
     assert len(box.drain()) == 5
     world.reset()
     world.run(1.0)
-    told = box.drain()
-    assert len(told) == 5
-    assert all(message.real_time_factor > 0 for message in told)
+    reported = box.drain()
+    assert len(reported) == 5
+    assert all(message.real_time_factor > 0 for message in reported)

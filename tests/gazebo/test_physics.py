@@ -164,8 +164,8 @@ def test_the_cart_drives_as_far_at_another_step(make, gazebo, rosbots):
 def test_the_rate_is_the_speed(falling, rate, speed):
     change(falling, max_update_rate=rate)
     assert falling.simulation.speed == (None if speed is None else pytest.approx(speed))
-    told = falling.done("get_physics_properties").max_update_rate
-    assert told == pytest.approx(max(rate, 0.0))
+    reported = falling.done("get_physics_properties").max_update_rate
+    assert reported == pytest.approx(max(rate, 0.0))
 
 
 def test_odes_parameters_are_kept_and_that_is_said(falling):
@@ -322,10 +322,10 @@ def configure(api, **values):
     for name, value in values.items():
         kind = {float: "doubles", int: "ints", bool: "bools"}[type(value)]
         lists[kind].append({"name": name, "value": value})
-    return told(api("set_parameters", config=lists).config)
+    return reported(api("set_parameters", config=lists).config)
 
 
-def told(config):
+def reported(config):
     return {
         item.name: item.value
         for kind in ("doubles", "ints", "bools")
@@ -362,10 +362,10 @@ def test_parameters_are_those_of_gazebo(falling):
         "contact_max_correcting_vel",
         "max_contacts",
     ]
-    assert told(description.max)["gravity_z"] == 100.0
-    assert told(description.min)["sor_pgs_rms_error_tol"] == -1.0
-    assert told(description.dflt)["sor_pgs_iters"] == 20
-    assert told(latest(falling, "parameter_updates")) == {
+    assert reported(description.max)["gravity_z"] == 100.0
+    assert reported(description.min)["sor_pgs_rms_error_tol"] == -1.0
+    assert reported(description.dflt)["sor_pgs_iters"] == 20
+    assert reported(latest(falling, "parameter_updates")) == {
         "auto_disable_bodies": False,
         "sor_pgs_precon_iters": 0,
         "sor_pgs_iters": 50,
@@ -391,12 +391,12 @@ def test_a_parameter_counts_and_is_reported(falling):
     assert falling.world.model("cube").pose.z == pytest.approx(100.0)
     assert falling.simulation.step_ns == 2_000_000
     assert falling.done("get_physics_properties").time_step == 0.002
-    assert told(latest(falling, "parameter_updates"))["time_step"] == 0.002
+    assert reported(latest(falling, "parameter_updates"))["time_step"] == 0.002
 
 
 def test_the_service_returns_the_parameters(falling):
     change(falling, gravity__y=1.5)
-    assert told(latest(falling, "parameter_updates"))["gravity_y"] == 1.5
+    assert reported(latest(falling, "parameter_updates"))["gravity_y"] == 1.5
 
 
 def test_a_parameter_leaves_what_was_changed_elsewhere(falling):

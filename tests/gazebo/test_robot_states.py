@@ -86,10 +86,10 @@ def test_the_cart_is_one_tree_and_nothing_is_reported_twice() -> None:
     assert set(parents) == links, "the root's parent is odom"
     roots = {next(iter(names)) for names in parents.values()} - set(parents)
     assert roots == {"odom"}
-    told = Counter(
+    reported = Counter(
         (one.child_frame_id, one.header.stamp.sec, one.header.stamp.nanosec) for one in heard.moving
     )
-    assert max(told.values()) == 1
+    assert max(reported.values()) == 1
     assert Counter(one.child_frame_id for one in heard.static).most_common(1)[0][1] == 1
     static = {one.child_frame_id for one in heard.static}
     assert not static & {one.child_frame_id for one in heard.moving}

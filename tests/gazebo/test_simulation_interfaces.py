@@ -60,8 +60,11 @@ def test_an_entity_is_what_it_can_do_until_somebody_says_otherwise(make):
     assert category("arm") == OBJECT
     said = {"category": {"category": 2}, "description": "a walker", "tags": ["person", "busy"]}
     assert api("set_entity_info", entity="cube", info=said).result.result == OK
-    told = api("get_entity_info", entity="cube").info
-    assert (told.category.category, told.description, told.tags) == (2, *list(said.values())[1:])
+    reported = api("get_entity_info", entity="cube").info
+    assert (reported.category.category, reported.description, reported.tags) == (
+        2,
+        *list(said.values())[1:],
+    )
 
     def found(**filters) -> list[str]:
         answer = api("get_entities", filters=filters)
@@ -219,8 +222,8 @@ def test_places_are_the_frames_that_stay(tmp_path: Path):
     file.write_text(WORLD)
     with cw.World(str(file)) as world:
         api = interfaces(world)
-        (told,) = coded(world, NAME_UNKNOWN)
-        assert (told.severity, told.origin.line) == ("warning", 5)
+        (reported,) = coded(world, NAME_UNKNOWN)
+        assert (reported.severity, reported.origin.line) == ("warning", 5)
         places = {each.name: each.pose for each in api("get_named_poses").poses}
         assert list(places) == ["door", "mat"]
         mat = places["mat"].position
@@ -236,8 +239,8 @@ def test_features_say_what_is_answered(make):
     api = interfaces(make.world())
     known = vars(message_class("simulation_interfaces/msg/SimulatorFeatures"))
     names = {number: name for name, number in known.items() if name.isupper()}
-    told = {names[each] for each in api("get_simulator_features").features.features.tolist()}
-    absent = set(names.values()) - told
+    reported = {names[each] for each in api("get_simulator_features").features.features.tolist()}
+    absent = set(names.values()) - reported
     assert len(names) == 32
     refused = {
         "POSE_BOUNDS": None,

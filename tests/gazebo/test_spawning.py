@@ -158,13 +158,13 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
     )
     text = URDF.replace('<box size="0.2 0.2 0.2"/>', '<mesh filename="package://things/tri.stl"/>')
 
-    def told(api):
+    def reported(api):
         api.done("spawn_urdf_model", model_xml=text)
         return coded(api.world.session, FILE_MISSING, kind="package", name="things")
 
-    (lost,) = told(gazebo(make.world()))
+    (lost,) = reported(gazebo(make.world()))
     assert lost.severity == "error"
-    assert told(gazebo(make.world(), package_path=[tmp_path])) == []
+    assert reported(gazebo(make.world(), package_path=[tmp_path])) == []
 
 
 @BOTH

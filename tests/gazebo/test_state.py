@@ -400,9 +400,9 @@ def test_model_states(make, gazebo, rosbots):
     world.publish("/part2_cmr/cmd_vel", linear_x=0.4, angular_z=0.5)
     box = world.mailbox("/gazebo/model_states")
     world.run(2.0)
-    told = box.drain()
-    assert len(told) == 400
-    last = told[-1]
+    reported = box.drain()
+    assert len(reported) == 400
+    last = reported[-1]
     assert last.name == ["ground_plane", "post", "rosbots"]
     # The last one is of now.
     speed = vec(last.twist[2].linear)
@@ -419,13 +419,17 @@ def test_link_states_are_those_of_the_service(chain):
     box = chain.world.mailbox("/gazebo/link_states")
     services = {name: link(chain, f"chain::{name}") for name in ("body", "arm", "tip")}
     chain.world.run(STEP)
-    told, _ = box.drain()
-    assert told.name == [f"chain::{name}" for name in ("body", "arm", "tip")]
+    reported, _ = box.drain()
+    assert reported.name == [f"chain::{name}" for name in ("body", "arm", "tip")]
     for row, state in enumerate(services.values()):
-        assert vec(told.pose[row].position) == pytest.approx(vec(state.pose.position), abs=1e-12)
-        assert quat(told.pose[row].orientation) == pytest.approx(quat(state.pose.orientation))
-        assert vec(told.twist[row].linear) == pytest.approx(vec(state.twist.linear), abs=1e-12)
-        assert vec(told.twist[row].angular) == pytest.approx(vec(state.twist.angular), abs=1e-12)
+        assert vec(reported.pose[row].position) == pytest.approx(
+            vec(state.pose.position), abs=1e-12
+        )
+        assert quat(reported.pose[row].orientation) == pytest.approx(quat(state.pose.orientation))
+        assert vec(reported.twist[row].linear) == pytest.approx(vec(state.twist.linear), abs=1e-12)
+        assert vec(reported.twist[row].angular) == pytest.approx(
+            vec(state.twist.angular), abs=1e-12
+        )
 
 
 def test_a_model_that_is_spawned_joins_and_one_that_is_deleted_leaves(make, gazebo):

@@ -93,9 +93,13 @@ def test_ros1_has_its_types_on_five_topics(worker):
     assert found.goal.command.position == 0.3
     found.feedback(from_dict(f"{KIND}_Feedback", {"position": 0.1}))
     found.succeed(worker.result(reached_goal=True), "there")
-    (told,) = box.drain()
-    assert told.__msgtype__ == "control_msgs/msg/GripperCommandActionResult"
-    assert (told.status.status, told.status.text, told.result.reached_goal) == (3, "there", True)
+    (reported,) = box.drain()
+    assert reported.__msgtype__ == "control_msgs/msg/GripperCommandActionResult"
+    assert (reported.status.status, reported.status.text, reported.result.reached_goal) == (
+        3,
+        "there",
+        True,
+    )
     assert [[each.status for each in one.status_list] for one in status.drain()] == [[1], [3]]
     assert feedback.drain()[0].feedback.position == 0.1
     topics.close()
@@ -104,8 +108,10 @@ def test_ros1_has_its_types_on_five_topics(worker):
 
 def test_a_flood_of_goals_is_bounded(worker):
     topics = ActionTopics(worker.graph, worker.action)
-    told = []
-    worker.graph.subscribe("/grip/status", lambda message: told.append(len(message.status_list)))
+    reported = []
+    worker.graph.subscribe(
+        "/grip/status", lambda message: reported.append(len(message.status_list))
+    )
     last = None
     for number in range(300):
         goal = worker.submit(f"quick {number}")
@@ -113,14 +119,14 @@ def test_a_flood_of_goals_is_bounded(worker):
             last.cancel(worker.result())
         last = goal
     assert len(worker.action.goals) <= 100
-    assert max(told) <= 100
+    assert max(reported) <= 100
     # Messages with the states of all goals do not grow in number with the goals.
-    assert len(told) <= 10
+    assert len(reported) <= 10
     worker.now = NANO
     worker.submit("later").cancel(worker.result())
-    assert len(told) == 12
+    assert len(reported) == 12
     topics.publish_status()
-    assert len(told) == 13
+    assert len(reported) == 13
     # The latest are still known, and one under way is not forgotten.
     assert worker.action.goal("quick 250") is not None
     assert worker.action.goal("quick 100") is None

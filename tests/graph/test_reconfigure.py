@@ -54,8 +54,8 @@ def change(graph, **lists):
 
 def test_description_is_laid_out_as_dynamic_reconfigure_does():
     graph, _ = serve()
-    told = last(graph, "/eye/parameter_descriptions")
-    (group,) = told["groups"]
+    reported = last(graph, "/eye/parameter_descriptions")
+    (group,) = reported["groups"]
     assert (group["name"], group["type"], group["parent"], group["id"]) == ("Default", "", 0, 0)
     assert [(p["name"], p["type"], p["level"]) for p in group["parameters"]] == [
         ("enable", "bool", 0),
@@ -66,31 +66,31 @@ def test_description_is_laid_out_as_dynamic_reconfigure_does():
         ("progressive", "bool", 0),
     ]
     assert group["parameters"][0]["description"] == "on"
-    assert told["max"] == {
+    assert reported["max"] == {
         "bools": [{"name": "enable", "value": True}, {"name": "progressive", "value": True}],
         "ints": [{"name": "quality", "value": 100}],
         "strs": [{"name": "format", "value": ""}],
         "doubles": [{"name": "rate", "value": 50.0}, {"name": "free", "value": math.inf}],
         "groups": DEFAULT_GROUP,
     }
-    assert told["min"] == {
+    assert reported["min"] == {
         "bools": [{"name": "enable", "value": False}, {"name": "progressive", "value": False}],
         "ints": [{"name": "quality", "value": 1}],
         "strs": [{"name": "format", "value": ""}],
         "doubles": [{"name": "rate", "value": 1.0}, {"name": "free", "value": -math.inf}],
         "groups": DEFAULT_GROUP,
     }
-    assert values(told["dflt"]) == {p.name: p.default for p in PARAMETERS}
-    assert last(graph, "/eye/parameter_updates") == told["dflt"]
+    assert values(reported["dflt"]) == {p.name: p.default for p in PARAMETERS}
+    assert last(graph, "/eye/parameter_updates") == reported["dflt"]
 
 
 def test_clients_find_the_choices():
-    told = eval(choices("jpeg", "png", description="how"))
-    assert [(item["name"], item["value"], item["type"]) for item in told["enum"]] == [
+    reported = eval(choices("jpeg", "png", description="how"))
+    assert [(item["name"], item["value"], item["type"]) for item in reported["enum"]] == [
         ("jpeg", "jpeg", "str"),
         ("png", "png", "str"),
     ]
-    assert told["enum_description"] == "how"
+    assert reported["enum_description"] == "how"
 
 
 def test_a_request_for_some_keeps_the_rest():
@@ -158,9 +158,9 @@ def test_initial_values_and_updates_from_elsewhere_are_published():
     graph, server = serve(initial={"rate": 100})
     assert values(last(graph, "/eye/parameter_updates"))["rate"] == 100.0
     server.update({"rate": 7, "format": "png"})
-    told = values(last(graph, "/eye/parameter_updates"))
-    assert (told["rate"], told["format"]) == (7.0, "png")
-    assert graph.parameters.get("/eye") == told
+    reported = values(last(graph, "/eye/parameter_updates"))
+    assert (reported["rate"], reported["format"]) == (7.0, "png")
+    assert graph.parameters.get("/eye") == reported
     with pytest.raises(UnknownNameError):
         server.update({"rte": 1})
 

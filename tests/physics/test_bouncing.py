@@ -88,9 +88,9 @@ def test_what_meets_below_the_threshold_stays(threshold, bounces):
     bounce = surface(0.8, threshold, 1.0)
     with scene(body("b", 0, 0.55, bounce), floor=bounce) as world:
         found = peaks(world, "b", 1.0)
-        told = coded(world, PHYSICS_SETTING_IGNORED, setting="restitution")
+        reported = coded(world, PHYSICS_SETTING_IGNORED, setting="restitution")
     assert (max(found, default=0.0) > 0.1) == bounces
-    assert len(told) == (0 if threshold else 2)  # one for each model
+    assert len(reported) == (0 if threshold else 2)  # one for each model
     if threshold:
         # The second time it is slower than either.
         assert len([z for z in found if z > 0.01]) == int(bounces)

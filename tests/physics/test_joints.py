@@ -143,8 +143,8 @@ def test_a_gearbox_without_hinges_says_so(make):
         + joint("box", "gearbox", "large", "small", "")
         + "</model>"
     )
-    (told,) = [each for each in model.diagnostics if each.severity == "warning"]
-    assert (told.code, told.values["name"]) == (ELEMENT_LEFT_OUT, "box")
+    (reported,) = [each for each in model.diagnostics if each.severity == "warning"]
+    assert (reported.code, reported.values["name"]) == (ELEMENT_LEFT_OUT, "box")
 
 
 @pytest.mark.parametrize("kind", ["fixed", "revolute"])

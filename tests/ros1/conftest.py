@@ -257,13 +257,13 @@ from std_srvs.srv import Empty, EmptyResponse
 space, refuse = sys.argv[1], sys.argv[2] == "refuse"
 present = ["ground_plane"]
 
-def told(what, fields):
+def reported(what, fields):
     print(json.dumps([what, fields]), flush=True)
 
 def spawn(kind):
     def serve(request):
         at, turn = request.initial_pose.position, request.initial_pose.orientation
-        told(kind, dict(
+        reported(kind, dict(
             name=request.model_name, xml=request.model_xml, namespace=request.robot_namespace,
             frame=request.reference_frame, position=[at.x, at.y, at.z],
             orientation=[turn.x, turn.y, turn.z, turn.w]))
@@ -272,16 +272,16 @@ def spawn(kind):
     return serve
 
 def configure(request):
-    told("configure", dict(name=request.model_name, parameter=request.urdf_param_name,
+    reported("configure", dict(name=request.model_name, parameter=request.urdf_param_name,
         joints=list(request.joint_names), positions=list(request.joint_positions)))
     return SetModelConfigurationResponse(True, "set")
 
 def delete(request):
-    told("delete", request.model_name)
+    reported("delete", request.model_name)
     return DeleteModelResponse(True, "deleted")
 
 def unpause(request):
-    told("unpause", None)
+    reported("unpause", None)
     return EmptyResponse()
 
 def world(request):
@@ -295,7 +295,7 @@ rospy.Service(space + "/delete_model", DeleteModel, delete)
 rospy.Service(space + "/set_model_configuration", SetModelConfiguration, configure)
 rospy.Service(space + "/spawn_sdf_model", SpawnModel, spawn("sdf"))
 rospy.Service(space + "/spawn_urdf_model", SpawnModel, spawn("urdf"))
-told("ready", None)
+reported("ready", None)
 rospy.spin()
 """
 

@@ -22,7 +22,7 @@ rospy.init_node("client")
 NAMES = ["a_joint", "b_joint"]
 arm = actionlib.SimpleActionClient("/arm/follow_joint_trajectory", FollowJointTrajectoryAction)
 hand = actionlib.SimpleActionClient("/hand/gripper_cmd", GripperCommandAction)
-told = {"servers": [each.wait_for_server(rospy.Duration(60)) for each in (arm, hand)]}
+reported = {"servers": [each.wait_for_server(rospy.Duration(60)) for each in (arm, hand)]}
 heard = []
 
 def goal(seconds, positions, names=NAMES, **more):
@@ -41,11 +41,11 @@ def end(client):
 
 def outcome(name, *arguments, **more):
     arm.send_goal(goal(*arguments, **more))
-    told[name] = end(arm)
+    reported[name] = end(arm)
 
 arm.send_goal(goal(0.5, [0.1, 0.0]), feedback_cb=lambda f: heard.append(f.joint_names))
-told["reached"] = end(arm)
-told["feedback"] = heard[:1]
+reported["reached"] = end(arm)
+reported["feedback"] = heard[:1]
 outcome("at once", 0, [0.0, 0.0])
 outcome("partial", 1, [0.1], names=NAMES[:1])
 outcome("stranger", 1, [0.1, 0.1], names=["a_joint", "elbow"])
@@ -62,22 +62,22 @@ arm.send_goal(goal(1000, [1.0, 0.0]))
 while arm.get_state() != GoalStatus.ACTIVE:
     rospy.sleep(0.02)
 other.send_goal(goal(1000, [0.5, 0.0]))
-told["replaced"] = end(arm)
+reported["replaced"] = end(arm)
 while other.get_state() != GoalStatus.ACTIVE:
     rospy.sleep(0.02)
 other.cancel_goal()
-told["cancelled"] = end(other)
+reported["cancelled"] = end(other)
 arm.send_goal(goal(1000, [1.0, 0.0]))
 while arm.get_state() != GoalStatus.ACTIVE:
     rospy.sleep(0.02)
 arm.cancel_all_goals()
-told["all cancelled"] = end(arm)
+reported["all cancelled"] = end(arm)
 
 grip = GripperCommandGoal()
 grip.command.position = 0.3
 hand.send_goal(grip)
-told["gripped"] = end(hand)[0], hand.get_result().reached_goal
-print(json.dumps(told))
+reported["gripped"] = end(hand)[0], hand.get_result().reached_goal
+print(json.dumps(reported))
 """
 
 
@@ -109,8 +109,8 @@ def test_a_client_of_actionlib(ros: Any, tmp_path: Path) -> None:
     client = ros.python(CLIENT)
     output, errors = client.communicate(timeout=240)
     assert client.returncode == 0, errors
-    told = json.loads(output.splitlines()[-1])
-    assert told == {
+    reported = json.loads(output.splitlines()[-1])
+    assert reported == {
         "servers": [True, True],
         "reached": ["SUCCEEDED", 0],
         "feedback": [["a_joint", "b_joint"]],

@@ -26,8 +26,8 @@ URDF = """<robot name="arm"><link name="world"/>
     <robotNamespace>/</robotNamespace></plugin></gazebo></robot>"""
 
 HELD = "held: {type: position_controllers/JointPositionController, joint: hinge}\n"
-TOLD = "told: {type: joint_state_controller/JointStateController, publish_rate: 50}\n"
-PARAMETERS = f"{HELD}{TOLD}controller_groups: {{both: [held, told], quiet: [told]}}\n"
+TOLD = "reported: {type: joint_state_controller/JointStateController, publish_rate: 50}\n"
+PARAMETERS = f"{HELD}{TOLD}controller_groups: {{both: [held, reported], quiet: [reported]}}\n"
 
 
 WATCH = """
@@ -99,22 +99,22 @@ def test_controllers_are_loaded_switched_and_taken_away(programs: Programs) -> N
     assert programs("controller_manager", "start", "held") == "Started 'held'\n"
     programs.until(held="running")
     programs("controller_group", "spawn", "quiet")
-    programs.until(held="stopped", told="running")
-    assert programs.listed() == {"held": "stopped", "told": "running"}
+    programs.until(held="stopped", reported="running")
+    assert programs.listed() == {"held": "stopped", "reported": "running"}
     programs("controller_group", "switch", "both")
-    programs.until(held="running", told="running")
+    programs.until(held="running", reported="running")
     assert programs("controller_group", "list") == (
-        "both (running): held, told\nquiet (running): told\n"
+        "both (running): held, reported\nquiet (running): reported\n"
     )
     away = programs.start("unspawner", "held")
-    programs.until(held="stopped", told="running")
+    programs.until(held="stopped", reported="running")
     end(away)
-    programs.until(held="running", told="running")
-    programs("controller_manager", "kill", "held", "told")
+    programs.until(held="running", reported="running")
+    programs("controller_manager", "kill", "held", "reported")
     programs.until()
     assert programs.listed() == {}
-    spawner = programs.start("spawner", "held", "told")
-    programs.until(held="running", told="running")
+    spawner = programs.start("spawner", "held", "reported")
+    programs.until(held="running", reported="running")
     end(spawner)
     programs.until()
 

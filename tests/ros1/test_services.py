@@ -33,7 +33,7 @@ known = {
     "set_physics_properties": SetPhysicsProperties, "spawn_sdf_model": SpawnModel,
     "spawn_urdf_model": SpawnModel, "unpause_physics": Empty,
 }
-called, told = set(), {}
+called, reported = set(), {}
 
 def call(name, *arguments, **fields):
     called.add(name)
@@ -72,29 +72,29 @@ SDF = '''<sdf version="1.6"><model name="arm"><link name="foot"/>
 
 yes("spawn_urdf_model", "box", URDF, "", at(3, 0, 0.2), "world")
 yes("spawn_sdf_model", "arm", SDF, "", at(0, 3, 0), "box")
-told["taken"] = no("spawn_urdf_model", "box", URDF, "", at(), "world")
-told["broken"] = no("spawn_urdf_model", "worse", URDF.replace("</link>", ""), "", at(), "world")
+reported["taken"] = no("spawn_urdf_model", "box", URDF, "", at(), "world")
+reported["broken"] = no("spawn_urdf_model", "worse", URDF.replace("</link>", ""), "", at(), "world")
 world = yes("get_world_properties")
-told["models"] = list(world.model_names)
-told["arm"] = place("arm").pose.position.x, place("arm").pose.position.y
-told["in the box"] = place("arm", "box").pose.position.y
+reported["models"] = list(world.model_names)
+reported["arm"] = place("arm").pose.position.x, place("arm").pose.position.y
+reported["in the box"] = place("arm", "box").pose.position.y
 model = yes("get_model_properties", "arm")
-told["bodies"], told["joints"] = list(model.body_names), list(model.joint_names)
-told["who"] = no("get_model_state", "bax", "")
+reported["bodies"], reported["joints"] = list(model.body_names), list(model.joint_names)
+reported["who"] = no("get_model_state", "bax", "")
 
 # States.
 call("pause_physics")
 held = now()
 time.sleep(0.3)
-told["held"] = now() == held
+reported["held"] = now() == held
 moving = Twist(Vector3(1, 0, 0), Vector3())
 yes("set_model_state", ModelState("box", at(1, 1, 0.2), moving, "world"))
-told["set"] = place("box").pose.position.x, place("box").twist.linear.x
-told["link"] = yes("get_link_state", "box::base", "").link_state.pose.position.y
+reported["set"] = place("box").pose.position.x, place("box").twist.linear.x
+reported["link"] = yes("get_link_state", "box::base", "").link_state.pose.position.y
 yes("set_link_state", LinkState("box::base", at(2, 1, 0.2), Twist(), "world"))
-told["moved"] = place("box").pose.position.x
+reported["moved"] = place("box").pose.position.x
 yes("set_model_configuration", "arm", "", ["hinge"], [0.5])
-told["turned"] = yes("get_joint_properties", "hinge").position[0]
+reported["turned"] = yes("get_joint_properties", "hinge").position[0]
 for topic, kind, message in (
     ("set_model_state", ModelState, ModelState("box", at(5, 1, 0.2), Twist(), "world")),
     ("set_link_state", LinkState, LinkState("box::base", at(6, 2, 0.2), Twist(), "world")),
@@ -107,29 +107,29 @@ for topic, kind, message in (
     while place("box").pose.position.x < 4.9 + (topic == "set_link_state"):
         assert time.monotonic() < until, topic
         time.sleep(0.05)
-told["by topic"] = place("box").pose.position.x, place("box").pose.position.y
+reported["by topic"] = place("box").pose.position.x, place("box").pose.position.y
 
 # Properties.
 link = yes("get_link_properties", "box::base")
-told["mass"] = link.mass
+reported["mass"] = link.mass
 yes("set_link_properties", "box::base", link.com, False, 4.0, 0.2, 0, 0, 0.2, 0, 0.2)
 link = yes("get_link_properties", "box::base")
-told["heavier"] = link.mass, link.ixx, link.gravity_mode
+reported["heavier"] = link.mass, link.ixx, link.gravity_mode
 yes("set_joint_properties", "hinge", ODEJointProperties(damping=[0.5]))
-told["damping"] = yes("get_joint_properties", "hinge").damping[0]
+reported["damping"] = yes("get_joint_properties", "hinge").damping[0]
 light = yes("get_light_properties", "sun")
 yes("set_light_properties", "sun", True, ColorRGBA(0.1, 0.2, 0.3, 1),
     ColorRGBA(0, 0, 0, 1), light.attenuation_constant, light.attenuation_linear,
     light.attenuation_quadratic,
     Vector3(0.2, 0.1, -0.9), at(0, 0, 10))
-told["light"] = yes("get_light_properties", "sun").diffuse.b
+reported["light"] = yes("get_light_properties", "sun").diffuse.b
 yes("delete_light", "sun")
-told["dark"] = no("get_light_properties", "sun")
+reported["dark"] = no("get_light_properties", "sun")
 physics = yes("get_physics_properties")
-told["paused"], told["gravity"] = physics.pause, physics.gravity.z
+reported["paused"], reported["gravity"] = physics.pause, physics.gravity.z
 yes("set_physics_properties", physics.time_step, physics.max_update_rate, Vector3(0, 0, -1.6),
     physics.ode_config)
-told["moon"] = yes("get_physics_properties").gravity.z
+reported["moon"] = yes("get_physics_properties").gravity.z
 
 # Forces: the momentum of 8 N for 0.5 s on 4 kg without friction or weight.
 start = rospy.Time(now())
@@ -142,32 +142,32 @@ call("unpause_physics")
 while now() < start.to_sec() + 1.0:
     time.sleep(0.05)
 moving = place("box").twist.linear
-told["speed"] = moving.x, moving.y > 0.5
+reported["speed"] = moving.x, moving.y > 0.5
 call("clear_body_wrenches", "box::base")
 call("clear_joint_forces", "hinge")
-told["effort"] = yes("get_joint_properties", "hinge").rate[0] > 0.1
+reported["effort"] = yes("get_joint_properties", "hinge").rate[0] > 0.1
 first = place("box").twist.linear.y
 began = now()
 while now() < began + 0.3:
     time.sleep(0.05)
-told["coasts"] = abs(place("box").twist.linear.y - first) < 0.05
+reported["coasts"] = abs(place("box").twist.linear.y - first) < 0.05
 
 # Time and the end.
 call("reset_world")
-told["back"] = abs(place("box").pose.position.x - 3.0) < 0.05
-told["goes on"] = now() > 1.0
+reported["back"] = abs(place("box").pose.position.x - 3.0) < 0.05
+reported["goes on"] = now() > 1.0
 last = now()
 call("reset_simulation")
-told["again"] = now() < last - 0.5
+reported["again"] = now() < last - 0.5
 yes("delete_model", "box")
-told["gone"] = no("delete_model", "box")
-told["left"] = sorted(set(known) - called)
-print(json.dumps(told))
+reported["gone"] = no("delete_model", "box")
+reported["left"] = sorted(set(known) - called)
+print(json.dumps(reported))
 """
 
 
 @pytest.fixture
-def told(ros: Any, tmp_path: Path) -> dict[str, Any]:
+def reported(ros: Any, tmp_path: Path) -> dict[str, Any]:
     ros.master()
     program = Path(sys.executable).with_name("cartwheel")
     ros.start(program, "run", "empty", "--headless", "--ros1")
@@ -178,36 +178,36 @@ def told(ros: Any, tmp_path: Path) -> dict[str, Any]:
     return answer
 
 
-def test_each_service_acts(told: dict[str, Any]) -> None:
-    assert told["left"] == []
-    assert "box" in told["taken"]
-    assert "line" in told["broken"] or ":" in told["broken"]
-    assert {"ground_plane", "box", "arm"} <= set(told["models"])
-    assert told["arm"] == pytest.approx((3.0, 3.0))
-    assert told["in the box"] == pytest.approx(3.0, abs=1e-6)
-    assert {"foot", "bar"} <= set(told["bodies"])
-    assert "hinge" in told["joints"]
-    assert "box" in told["who"]
-    assert told["held"]
-    assert told["set"] == pytest.approx((1.0, 1.0))
-    assert told["link"] == pytest.approx(1.0)
-    assert told["moved"] == pytest.approx(2.0)
-    assert told["turned"] == pytest.approx(0.5)
-    assert told["by topic"] == pytest.approx((6.0, 2.0))
-    assert told["mass"] == 2.0
-    assert told["heavier"] == [4.0, 0.2, False]
-    assert told["damping"] == 0.5
-    assert told["light"] == pytest.approx(0.3)
-    assert "sun" in told["dark"]
-    assert told["paused"] is True
-    assert told["gravity"] == -9.8
-    assert told["moon"] == -1.6
-    speed, pushed = told["speed"]
+def test_each_service_acts(reported: dict[str, Any]) -> None:
+    assert reported["left"] == []
+    assert "box" in reported["taken"]
+    assert "line" in reported["broken"] or ":" in reported["broken"]
+    assert {"ground_plane", "box", "arm"} <= set(reported["models"])
+    assert reported["arm"] == pytest.approx((3.0, 3.0))
+    assert reported["in the box"] == pytest.approx(3.0, abs=1e-6)
+    assert {"foot", "bar"} <= set(reported["bodies"])
+    assert "hinge" in reported["joints"]
+    assert "box" in reported["who"]
+    assert reported["held"]
+    assert reported["set"] == pytest.approx((1.0, 1.0))
+    assert reported["link"] == pytest.approx(1.0)
+    assert reported["moved"] == pytest.approx(2.0)
+    assert reported["turned"] == pytest.approx(0.5)
+    assert reported["by topic"] == pytest.approx((6.0, 2.0))
+    assert reported["mass"] == 2.0
+    assert reported["heavier"] == [4.0, 0.2, False]
+    assert reported["damping"] == 0.5
+    assert reported["light"] == pytest.approx(0.3)
+    assert "sun" in reported["dark"]
+    assert reported["paused"] is True
+    assert reported["gravity"] == -9.8
+    assert reported["moon"] == -1.6
+    speed, pushed = reported["speed"]
     assert speed == pytest.approx(8 * 0.5 / 4, rel=1e-3)
     assert pushed
-    assert told["effort"]
-    assert told["coasts"]
-    assert told["back"]
-    assert told["goes on"]
-    assert told["again"]
-    assert "box" in told["gone"]
+    assert reported["effort"]
+    assert reported["coasts"]
+    assert reported["back"]
+    assert reported["goes on"]
+    assert reported["again"]
+    assert "box" in reported["gone"]

@@ -98,12 +98,12 @@ def test_two_carts_from_one_file_drive_apart(ros: Any) -> None:
     ros.master()
     (ros.folder / "two.launch").write_text(TWO)
     launch(ros, ros.folder / "two.launch")
-    told = drive(
+    reported = drive(
         ros,
         {"odom": "/left/odom", "command": "/left/part2_cmr/cmd_vel", "speed": 0.5, "turn": 0.0},
         {"odom": "/right/odom", "command": "/right/part2_cmr/cmd_vel", "speed": -0.5, "turn": 0.0},
     )
-    left, right = told["/left/odom"], told["/right/odom"]
+    left, right = reported["/left/odom"], reported["/right/odom"]
     assert left["after"][0] > 1.0
     assert right["after"][0] < -1.0
     assert left["after"][1] == pytest.approx(2.0, abs=0.05)
@@ -144,8 +144,8 @@ def test_turtlebot3(ros: Any) -> None:
     ros.master()
     (ros.folder / "bot.launch").write_text(TURTLEBOT)
     launch(ros, ros.folder / "bot.launch", "model:=waffle_pi", packages=ros.folder / "packages")
-    told = drive(ros, {"odom": "/odom", "command": "/cmd_vel", "speed": 0.2, "turn": 0.0})
-    assert told["/odom"]["after"][0] - told["/odom"]["before"][0] > 0.6
+    reported = drive(ros, {"odom": "/odom", "command": "/cmd_vel", "speed": 0.2, "turn": 0.0})
+    assert reported["/odom"]["after"][0] - reported["/odom"]["before"][0] > 0.6
     wanted = {"/scan", "/imu", "/joint_states", "/tf", "/camera/rgb/image_raw"}
     assert wanted <= listed(ros)
     assert "ranges: [" in ros.run("rostopic", "echo", "-n1", "/scan").stdout
@@ -161,13 +161,13 @@ def test_two_pioneers(ros: Any) -> None:
     ros.master()
     file = folder / "test" / "multi_robot_scenario" / "launch" / "multi_robot_scenario.launch"
     launch(ros, file, packages=folder.parent)
-    told = drive(
+    reported = drive(
         ros,
         {"odom": "/r1/odom", "command": "/r1/cmd_vel", "speed": -0.3, "turn": 0.0},
         {"odom": "/r2/odom", "command": "/r2/cmd_vel", "speed": -0.3, "turn": 0.0},
     )
     # They face each other, so backwards is apart.
-    r1, r2 = told["/r1/odom"], told["/r2/odom"]
+    r1, r2 = reported["/r1/odom"], reported["/r2/odom"]
     assert r1["after"][1] - r1["before"][1] < -0.6
     assert r2["after"][1] - r2["before"][1] > 0.6
     assert {"/r1/front_laser/scan", "/r2/front_camera/image_raw"} <= listed(ros)
@@ -183,8 +183,8 @@ def test_mir(ros: Any) -> None:
     ros.master()
     launch(ros, "mir_gazebo", "mir_empty_world.launch", "gui:=false", packages=packages)
     ros.run("rosservice", "call", "--wait", "/gazebo/unpause_physics")
-    told = drive(ros, {"odom": "/odom", "command": "/cmd_vel", "speed": 0.3, "turn": 0.0})
+    reported = drive(ros, {"odom": "/odom", "command": "/cmd_vel", "speed": 0.3, "turn": 0.0})
     # Up to 0.3 m/s at no more than 2 m/s².
-    assert told["/odom"]["after"][0] - told["/odom"]["before"][0] > 0.8
+    assert reported["/odom"]["after"][0] - reported["/odom"]["before"][0] > 0.8
     assert {"/f_scan", "/b_scan", "/imu_data", "/mir/joint_states"} <= listed(ros)
     assert "ranges: [" in ros.run("rostopic", "echo", "-n1", "/f_scan").stdout

@@ -118,9 +118,9 @@ def test_a_post_is_put_before_the_camera(shell: Terminal) -> None:
         "rosrun gazebo_ros spawn_model -file object.urdf -urdf -x 1 -y 0 -z 1 -model my_object"
     )
     assert "success" in shown.lower()
-    told = shell.run("rosservice call /gazebo/get_world_properties")
-    assert "my_object" in told
-    assert "rosbots" in told
+    reported = shell.run("rosservice call /gazebo/get_world_properties")
+    assert "my_object" in reported
+    assert "rosbots" in reported
 
 
 def test_the_imu_is_read(shell: Terminal) -> None:

@@ -96,8 +96,8 @@ def test_reconfigure_works_with_rosservice_and_rostopic(ros):
         lambda: "/gazebo/set_parameters" in ros.services,
         "the service",
     )
-    told = ros.run("rostopic", "echo", "-n", "1", "/gazebo/parameter_updates").stdout
-    assert "time_step" in told
+    reported = ros.run("rostopic", "echo", "-n", "1", "/gazebo/parameter_updates").stdout
+    assert "time_step" in reported
     answer = ros.run(
         *("rosservice", "call", "/gazebo/set_parameters"),
         "{config: {doubles: [{name: max_update_rate, value: 500.0}]}}",

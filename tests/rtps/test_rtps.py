@@ -158,9 +158,9 @@ def test_samples_of_a_writer_that_was_lost_are_not_delivered_again(
 
 def test_requests_for_samples_that_are_gone_are_answered_and_counted() -> None:
     sent: list[bytes] = []
-    told: list[int] = []
+    reported: list[int] = []
     writer = Writer(endpoint(OURS + WRITER, depth=2), lambda parts, _: sent.append(b"".join(parts)))
-    writer.on_drop = lambda: told.append(writer.dropped)
+    writer.on_drop = lambda: reported.append(writer.dropped)
     writer.match(endpoint(THEIRS + READER), HERE)
     for number in range(5):
         writer.write(bytes([0, 1, 0, 0, number, 0, 0, 0]))
@@ -172,12 +172,12 @@ def test_requests_for_samples_that_are_gone_are_answered_and_counted() -> None:
     (gap,) = [each for each in contents if isinstance(each, wire.Gap)]
     assert (gap.start, gap.base) == (1, 4)
     # Once for all, and not again if it asks again.
-    assert told == [3]
+    assert reported == [3]
     for count in range(2, 5):
         writer.take_acknack(
             THEIRS + READER, wire.Acknack(READER, WRITER, 1, (1, 2, 3, 4, 5), count, True)
         )
-    assert told == [3]
+    assert reported == [3]
 
 
 def test_a_receiver_that_falls_behind_gets_the_latest_samples() -> None:
@@ -186,8 +186,8 @@ def test_a_receiver_that_falls_behind_gets_the_latest_samples() -> None:
     writer = Writer(
         endpoint(OURS + WRITER, reliable=False, depth=5), lambda *_: True, outbox=outbox
     )
-    told: list[int] = []
-    writer.on_refusal = lambda: told.append(writer.dropped)
+    reported: list[int] = []
+    writer.on_refusal = lambda: reported.append(writer.dropped)
     writer.match(endpoint(THEIRS + READER, reliable=False), HERE)
     for number in range(50):
         writer.write(bytes([number]) * 150_000)
@@ -198,13 +198,13 @@ def test_a_receiver_that_falls_behind_gets_the_latest_samples() -> None:
     assert list(dict.fromkeys(each.number for each in fragments)) == [1, 46, 47, 48, 49, 50]
     # The one that was on its way is complete.
     assert len(fragments) == 6 * 3
-    assert told == list(range(1, 45))
+    assert reported == list(range(1, 45))
 
 
 def test_what_a_frozen_reader_misses_is_counted_once() -> None:
-    told: list[int] = []
+    reported: list[int] = []
     writer = Writer(endpoint(OURS + WRITER, depth=2), lambda *_: None)
-    writer.on_silence = lambda: told.append(writer.dropped)
+    writer.on_silence = lambda: reported.append(writer.dropped)
     writer.match(endpoint(THEIRS + READER), HERE)
     payload = bytes([0, 1, 0, 0, 0, 0, 0, 0])
     for _ in range(3):
@@ -217,11 +217,11 @@ def test_what_a_frozen_reader_misses_is_counted_once() -> None:
     assert writer.dropped == 0
     # It has 3 of 10, and 2 are kept for it.
     writer.remind(now + 4.0)
-    assert told == [5]
+    assert reported == [5]
     writer.write(payload)
     writer.remind(now + 20.0)
     writer.remind(now + 30.0)
-    assert told == [5, 6]
+    assert reported == [5, 6]
     # It wakes, and asks for what is gone.
     asked = wire.Acknack(READER, WRITER, 4, tuple(range(4, 12)), 2, True)
     writer.take_acknack(THEIRS + READER, asked)
@@ -232,10 +232,10 @@ def test_what_a_frozen_reader_misses_is_counted_once() -> None:
 
 @pytest.mark.parametrize("size", [8, 150_000])
 def test_what_the_system_does_not_take_is_counted_where_nobody_asks_again(size: int) -> None:
-    told: list[int] = []
+    reported: list[int] = []
     takes = [True]
     writer = Writer(endpoint(OURS + WRITER), lambda *_: takes[0])
-    writer.on_refusal = lambda: told.append(writer.dropped)
+    writer.on_refusal = lambda: reported.append(writer.dropped)
     other = b"o" * 12
     for guid in (THEIRS + READER, THEIRS + b"\0\0\2\4", other + READER):
         writer.match(endpoint(guid, reliable=guid.startswith(other)), HERE)
@@ -245,11 +245,11 @@ def test_what_the_system_does_not_take_is_counted_where_nobody_asks_again(size: 
     takes[0] = False
     writer.write(payload)
     # Two readers of one participant get none of it; the reliable one will ask.
-    assert told == [2]
+    assert reported == [2]
     writer.unmatch(THEIRS + READER)
     writer.unmatch(THEIRS + b"\0\0\2\4")
     writer.write(payload)
-    assert told == [2]
+    assert reported == [2]
 
 
 def test_who_comes_late_gets_what_is_not_too_old() -> None:
@@ -267,8 +267,8 @@ def test_who_comes_late_gets_what_is_not_too_old() -> None:
     contents = [each.content for data in sent for each in wire.read(memoryview(data))]
     got = [each.payload[4] for each in contents if isinstance(each, wire.Data)]
     assert got == [5, 12]
-    (told,) = (each for each in contents if isinstance(each, wire.Heartbeat))
-    assert (told.first, told.last) == (2, 3)
+    (reported,) = (each for each in contents if isinstance(each, wire.Heartbeat))
+    assert (reported.first, reported.last) == (2, 3)
 
 
 def test_who_comes_late_is_reminded_until_it_answers() -> None:

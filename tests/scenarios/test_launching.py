@@ -76,11 +76,11 @@ def gone(process: int) -> bool:
 def test_it_ends_with_all_processes(tmp_path, monkeypatch, daemon):
     monkeypatch.setattr(launching, "_GRACE", 0.3)
     (tmp_path / "stubborn.py").write_text(STUBBORN)
-    told = tmp_path / "process"
-    command = [sys.executable, "stubborn.py", str(told), *(["daemon"] if daemon else [])]
+    reported = tmp_path / "process"
+    command = [sys.executable, "stubborn.py", str(reported), *(["daemon"] if daemon else [])]
     with Launched(command, tmp_path, {}):
-        assert eventually(told.exists)
-        process = int(told.read_text())
+        assert eventually(reported.exists)
+        process = int(reported.read_text())
         assert not gone(process)
         if daemon:
             assert os.getsid(process) == process

@@ -109,8 +109,8 @@ def test_two_commands_in_a_period_are_reported_once():
         lockstep.start()
         lockstep.advance(1.0)
         lockstep.close()
-        (told,) = (each for each in world.diagnostics if each.code is COMMAND_EXTRA)
-        assert told.values["topic"] == DRIVE and told.values["count"] == 10
+        (reported,) = (each for each in world.diagnostics if each.code is COMMAND_EXTRA)
+        assert reported.values["topic"] == DRIVE and reported.values["count"] == 10
 
 
 @pytest.mark.parametrize(

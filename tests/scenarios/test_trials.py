@@ -256,11 +256,11 @@ def test_a_case_that_is_shown_runs_in_real_time(scenario, tmp_path):
 
     loaded = scenario(f"{CART}duration: 1\nexpect: [{{expression: 'True'}}]")
     (case,) = digests(loaded, cases_of(loaded))
-    told: list[str] = []
+    reported: list[str] = []
     options = Options(folder=tmp_path / "out", view=True)
-    outcome = Runner([loaded], options, announce=told.append).run(case)
+    outcome = Runner([loaded], options, announce=reported.append).run(case)
     assert outcome.status == "passed" and outcome.wall > 0.9
-    assert told[0].startswith("http://127.0.0.1:")
+    assert reported[0].startswith("http://127.0.0.1:")
 
 
 def test_a_step_that_fails_has_a_line(run):

@@ -149,8 +149,8 @@ def test_another_model_far_away_changes_no_noise(make, rosbots):
     readings = []
     for extra in ((), (far,)):
         run = Run(make, rosbots, extra=extra)
-        told = []
-        run.world.subscribe("/imu/data", told.append)
+        reported = []
+        run.world.subscribe("/imu/data", reported.append)
         run.world.run(6.0)
         readings.append(
             [
@@ -159,7 +159,7 @@ def test_another_model_far_away_changes_no_noise(make, rosbots):
                     for vector in ("angular_velocity", "linear_acceleration")
                     for axis in "xyz"
                 ]
-                for message in told
+                for message in reported
             ]
         )
     alone, beside = map(np.array, readings)

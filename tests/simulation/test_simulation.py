@@ -185,9 +185,9 @@ def test_an_unknown_plugin_is_reported(make, rosbots):
     )
     world = make.world()
     world.session.spawn(dataclasses.replace(rosbots, plugins=(wrong,)), pose=Pose((0, 0, 0.1)))
-    (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert told.code is devices.PLUGIN_UNKNOWN
-    assert told.values["meant"] == "libgazebo_ros_diff_drive.so"
+    (reported,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert reported.code is devices.PLUGIN_UNKNOWN
+    assert reported.values["meant"] == "libgazebo_ros_diff_drive.so"
 
 
 def test_reset_takes_all_back_to_where_it_was_spawned(driving):
@@ -201,17 +201,17 @@ def test_reset_takes_all_back_to_where_it_was_spawned(driving):
     driving.run(2.0)
     # Commands are forgotten as well: it stands.
     assert abs(driving.model("rosbots").pose.x) < 1e-3
-    told = stamps.drain()
-    assert [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in told] == [
+    reported = stamps.drain()
+    assert [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in reported] == [
         i * 10_000_000 for i in range(201)
     ]
 
 
 def test_reset_notifies_its_listeners(driving):
-    told = []
-    driving.session.simulation.on_reset.append(lambda: told.append(driving.time))
+    reported = []
+    driving.session.simulation.on_reset.append(lambda: reported.append(driving.time))
     driving.reset()
-    assert told == [0.0]
+    assert reported == [0.0]
 
 
 def test_pause_holds_time_and_steps_are_counted(driving):

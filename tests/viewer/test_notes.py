@@ -36,7 +36,7 @@ def test_data_of_an_unknown_frame_is_reported_once(notes):
     reported = []
     show = page.show
     page.show = lambda diagnostic: (reported.append(diagnostic), show(diagnostic))
-    scans = SimpleNamespace(page=page, _told=set())
+    scans = SimpleNamespace(page=page, _reported=set())
     for _ in range(3):
         Scans._tell(scans, "/scan", "lasr", "robot")
     ((title, body, how),) = shown

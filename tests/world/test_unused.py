@@ -70,13 +70,13 @@ def test_a_velocity_limit_that_controllers_heed_is_none_without_effect() -> None
     transmission = """<transmission name="t"><type>transmission_interface/SimpleTransmission</type>
       <joint name="j"><hardwareInterface>PositionJointInterface</hardwareInterface></joint>
       </transmission>"""
-    for more, told in (("", 1), (transmission, 1), (plugin, 1), (plugin + transmission, 0)):
+    for more, received in (("", 1), (transmission, 1), (plugin, 1), (plugin + transmission, 0)):
         text = URDF.format(tags="").replace("</robot>", f"{more}</robot>")
         with cw.World("empty") as world:
             world.spawn(load_text(text, file="r.urdf"))
             setting = "a joint's velocity limit"
             found = coded(world, world_codes.PHYSICS_SETTING_IGNORED, setting=setting)
-        assert len(found) == told, more
+        assert len(found) == received, more
 
 
 AXIS = "a joint axis"
@@ -100,17 +100,17 @@ LOOP = """<sdf version="1.7"><model name="loop"><link name="a"/><link name="b"/>
 def test_what_a_joint_that_closes_a_loop_does_not_do_is_reported(kind, axis, setting) -> None:
     with cw.World("empty") as world:
         world.spawn(load_text(LOOP.format(kind, axis), file="l.sdf"))
-        told = [
+        received = [
             each
             for each in coded(world, world_codes.PHYSICS_SETTING_IGNORED)
             if each.origin.line == 4 and each.values["setting"] in (RESISTANCE, AXIS)
         ]
-    assert [each.values["setting"] for each in told] == ([] if setting is None else [setting])
+    assert [each.values["setting"] for each in received] == ([] if setting is None else [setting])
 
 
-@pytest.mark.parametrize(("coefficient", "told"), [(0.5, 0), (1.0, 0), (1.5, 2)])
-def test_a_restitution_above_1_is_reported(coefficient, told) -> None:
+@pytest.mark.parametrize(("coefficient", "received"), [(0.5, 0), (1.0, 0), (1.5, 2)])
+def test_a_restitution_above_1_is_reported(coefficient, received) -> None:
     bounce = f"""<collision><surface><bounce><threshold>0.1</threshold><restitution_coefficient>
       {coefficient}</restitution_coefficient></bounce></surface></collision>"""
     said = [each for each in notes(bounce) if each.values["setting"] == "a restitution above 1"]
-    assert [each.values["count"] for each in said] == ([2] if told else [])
+    assert [each.values["count"] for each in said] == ([2] if received else [])

@@ -43,8 +43,8 @@ def test_everything_stays_where_it_was_put(name):
 @pytest.mark.parametrize("name", WORLDS)
 def test_nothing_is_to_be_complained_of(name):
     with opened(name) as world:
-        told = [str(d) for d in world.session.diagnostics if d.severity != "info"]
-    assert not told
+        reported = [str(d) for d in world.session.diagnostics if d.severity != "info"]
+    assert not reported
 
 
 @pytest.mark.parametrize("name", [name for name in WORLDS if name != "elevator"])

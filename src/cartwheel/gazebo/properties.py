@@ -95,9 +95,9 @@ class Properties:
     def get_scoped_properties(self, request: Any) -> Answer:
         """The ROS 2 response, in which link names include the model's name."""
         answer = self.get_model_properties(request)
-        model, told = request.model_name, answer.fields
-        told["canonical_body_name"] = scoped(model, told["canonical_body_name"])
-        told["body_names"] = [scoped(model, name) for name in told["body_names"]]
+        model, reported = request.model_name, answer.fields
+        reported["canonical_body_name"] = scoped(model, reported["canonical_body_name"])
+        reported["body_names"] = [scoped(model, name) for name in reported["body_names"]]
         return answer
 
     def get_model_properties(self, request: Any) -> Answer:

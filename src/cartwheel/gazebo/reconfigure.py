@@ -106,8 +106,8 @@ class PhysicsReconfigure:
 
     def _change(self, values: dict[str, Value]) -> dict[str, Value]:
         """Applies values that differ from the last published ones: others may have changed."""
-        told, now = self._server.values, self._present()
-        new: dict[str, Any] = now | {k: v for k, v in values.items() if v != told[k]}
+        reported, now = self._server.values, self._present()
+        new: dict[str, Any] = now | {k: v for k, v in values.items() if v != reported[k]}
         try:
             self._physics.change(
                 time_step=new["time_step"],

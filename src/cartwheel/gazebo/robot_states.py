@@ -29,7 +29,7 @@ _LOOK = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
+class _Robot:
     """A robot whose link frames are published."""
 
     description: RobotDescription
@@ -75,7 +75,7 @@ class RobotStates:
         self._descriptions = descriptions
         self._publisher: Publisher | None = None
         self._others: frozenset[str] = frozenset()
-        self._told: dict[str, _Told] = {}
+        self._robots: dict[str, _Robot] = {}
         self._version = -1
         self._warned: set[str] = set()
         self._looking = simulation.schedule(_LOOK, before=self._look, active=self._is_due)
@@ -137,12 +137,12 @@ class RobotStates:
 
     def _tell_of(self, robots: Mapping[str, RobotDescription]) -> None:
         static = self._graph.static_transforms
-        for name in list(self._told):
-            if robots.get(name) is not self._told[name].description:
-                del self._told[name]
+        for name in list(self._robots):
+            if robots.get(name) is not self._robots[name].description:
+                del self._robots[name]
                 static.remove((NODE, name))
         for name, description in robots.items():
-            if name in self._told:
+            if name in self._robots:
                 continue
             prefix = self._simulation.frame_prefix(name)
             joints = _tree(description)
@@ -160,22 +160,24 @@ class RobotStates:
             mimics = any(each.joint.mimic is not None for each in moving)
             read = description.joints if mimics else [each.joint for each in moving]
             names = tuple(joint.name for joint in read)
-            self._told[name] = _Told(description, prefix, moving, others, names, mimics, children)
+            self._robots[name] = _Robot(
+                description, prefix, moving, others, names, mimics, children
+            )
             fixed = [JointPose(description, joint) for joint in joints if joint.type == "fixed"]
             if fixed:
                 static.put((NODE, name), _transforms(0, fixed, {}, prefix))
         # Advertise only if there is something to publish, so that /tf shows the actual publisher.
-        if self._told and self._publisher is None:
+        if self._robots and self._publisher is None:
             self._publisher = self._graph.advertise(
                 "/tf", "tf2_msgs/msg/TFMessage", node=NODE, rate=RATE
             )
-        elif not self._told and self._publisher is not None:
+        elif not self._robots and self._publisher is not None:
             self._publisher.close()
             self._publisher = None
 
     def _are_told(self, name: str, children: frozenset[str]) -> bool:
-        for other, told in self._told.items():
-            shared = sorted(told.children & children)
+        for other, robot in self._robots.items():
+            shared = sorted(robot.children & children)
             if not shared:
                 continue
             if self._reports and name not in self._warned:
@@ -204,11 +206,11 @@ class RobotStates:
         simulation = self._simulation
         placed = set(simulation.scene.joints)
         transforms: list[Any] = []
-        for name, told in self._told.items():
-            joints, read = told.moving, told.read
-            if every and told.others:
-                joints += told.others
-                read += tuple(each.joint.name for each in told.others)
+        for name, robot in self._robots.items():
+            joints, read = robot.moving, robot.read
+            if every and robot.others:
+                joints += robot.others
+                read += tuple(each.joint.name for each in robot.others)
             if not joints or name not in simulation.models:
                 continue
             positions = {
@@ -216,9 +218,9 @@ class RobotStates:
                 for joint in read
                 if (name, joint) in placed
             }
-            if told.mimics:
-                positions = joint_positions(told.description, positions)
-            transforms += _transforms(simulation.time_ns, joints, positions, told.prefix)
+            if robot.mimics:
+                positions = joint_positions(robot.description, positions)
+            transforms += _transforms(simulation.time_ns, joints, positions, robot.prefix)
         return transforms
 
 

@@ -176,14 +176,14 @@ class Ros2Api:
     def _get_state(self, request: Any) -> Answer:
         read = self._states.model if self._is_model(request.name) else self._states.link
         seen = read(request.name, request.reference_frame)
-        told = message_class("gazebo_msgs/msg/EntityState")(
+        reported = message_class("gazebo_msgs/msg/EntityState")(
             request.name,
             pose_message(seen.pose),
             twist_message(seen.linear, seen.angular),
             request.reference_frame,
         )
         frame = request.reference_frame or "world"
-        return Answer(fields={"header": header(self._simulation.time_ns, frame), "state": told})
+        return Answer(fields={"header": header(self._simulation.time_ns, frame), "state": reported})
 
     def _set_state(self, request: Any) -> Answer:
         state = request.state

@@ -80,7 +80,7 @@ class Node:
         """Name of the node."""
         self._package_path = [Path(each) for each in package_path]
         self._subscriptions: list[_Subscription] = []
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._loop = Loop(_report, name=name)
         self._loop.start()
 
@@ -250,8 +250,8 @@ class Node:
         does = "reads" if ours.is_writer else "publishes"
         found = f"{policy} does not fit" if policy else f"its type is {type_of(other.type)}"
         warning = f"{self.name}: a node {does} {topic}, but {found}, so no messages are exchanged"
-        if warning not in self._told and len(self._told) < _MOST_WARNINGS:
-            self._told.add(warning)
+        if warning not in self._reported and len(self._reported) < _MOST_WARNINGS:
+            self._reported.add(warning)
             _report(warning)
 
     def spin(self) -> None:

@@ -76,7 +76,7 @@ class ModelView:
             scene.add_frame(self.path(link.name), show_axes=False) for link in description.links
         ]
         self._shown = np.full((len(self._frames), 7), np.nan)
-        self._told: set[tuple[object, ...]] = set()
+        self._said: set[tuple[object, ...]] = set()
         self._visuals = self.add_visuals(scene)
 
     @property
@@ -247,8 +247,8 @@ class ModelView:
     def _say(self, error: CartwheelError) -> None:
         """Reports a shape that cannot be drawn once, for all browsers."""
         identity = error.diagnostic().identity
-        if identity not in self._told:
-            self._told.add(identity)
+        if identity not in self._said:
+            self._said.add(identity)
             self._problem(error)
 
     def _mesh(

@@ -44,7 +44,7 @@ class Scans(Panel):
         self._counts: dict[str, int] = {}
         self._clouds: dict[str, Any] = {}
         self._recent: deque[Snapshot] = deque(maxlen=_SNAPSHOTS)
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._due = Every(_RATE)
 
     def leave(self) -> None:
@@ -123,8 +123,8 @@ class Scans(Panel):
             cloud.points = points
 
     def _tell(self, topic: str, frame: str, model: str) -> None:
-        if topic not in self._told:
-            self._told.add(topic)
+        if topic not in self._reported:
+            self._reported.add(topic)
             self.page.show(
                 SCAN_NOT_SHOWN.diagnostic(
                     f'{topic} is not shown: model "{model}" has no link "{frame}"',

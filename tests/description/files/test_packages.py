@@ -341,10 +341,10 @@ def test_a_file_of_another_computer_is_found_in_its_package(tmp_path, uri):
     mesh.write_text("solid base")
     found = packages(robot(own))
     assert found.resolve(uri, HERE, what="mesh").samefile(mesh)
-    (told,) = found.moves()
-    assert told.code is files.FILE_ELSEWHERE
-    assert told.values["name"] == uri
-    assert told.origin == HERE
+    (received,) = found.moves()
+    assert received.code is files.FILE_ELSEWHERE
+    assert received.values["name"] == uri
+    assert received.origin == HERE
 
 
 @pytest.mark.parametrize(

@@ -39,9 +39,9 @@ def test_link_relative_to_link():
 def test_a_pose_of_another_length_is_read_as_far_as_it_goes(text):
     found = robot(f'<link name="a"><pose>{text}</pose></link>')
     close(found.link("a").pose, (1, 2, 0))
-    (told,) = found.diagnostics
-    assert (named(told), told.values["stated"]) == ("value-ignored", text)
-    assert told.origin.line == 3
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["stated"]) == ("value-ignored", text)
+    assert reported.origin.line == 3
 
 
 def test_a_model_may_go_by_its_own_name():

@@ -110,7 +110,7 @@ def test_a_heightmap_without_height_is_level_ground(tmp_path):
 def test_a_measure_that_is_not_stated_is_1_m(geometry, expected, missing):
     found = link(f'<visual name="v"><geometry>{geometry}</geometry></visual>')
     assert found.links[0].visuals[0].shape == expected
-    assert [told.values["missing"] == tag for tag, told in
+    assert [reported.values["missing"] == tag for tag, reported in
             zip(missing, found.diagnostics, strict=True)] == [True] * len(missing)  # fmt: skip
 
 
@@ -118,9 +118,9 @@ def test_a_measure_that_is_not_stated_is_1_m(geometry, expected, missing):
 def test_a_part_without_a_shape_is_left_out(geometry):
     found = link(f'<collision name="c">{geometry}</collision>')
     assert found.links[0].collisions == ()
-    (told,) = found.diagnostics
-    assert told.severity == "warning"
-    assert (told.values["left_out"], told.values["element"]) == ("collision", "c")
+    (reported,) = found.diagnostics
+    assert reported.severity == "warning"
+    assert (reported.values["left_out"], reported.values["element"]) == ("collision", "c")
 
 
 def test_a_mesh_without_the_submesh_costs_the_one_shape(tmp_path):
@@ -131,9 +131,9 @@ def test_a_mesh_without_the_submesh_costs_the_one_shape(tmp_path):
         folder=tmp_path,
     )
     assert found.links[0].visuals == ()
-    (told,) = found.diagnostics
-    assert told.severity == "error"
-    assert named(told) == "mesh-unreadable lid"
+    (reported,) = found.diagnostics
+    assert reported.severity == "error"
+    assert named(reported) == "mesh-unreadable lid"
 
 
 def test_one_scale_counts_for_all_axes_and_none_costs_the_shape(tmp_path):
@@ -158,10 +158,10 @@ def test_a_missing_mesh_costs_the_one_shape(tmp_path):
     )
     assert found.links[0].visuals == ()
     assert len(found.links[0].collisions) == 1
-    (told,) = found.diagnostics
-    assert told.severity == "error"
-    assert told.values["left_out"] == "visual"
-    assert told.origin.line == 4
+    (reported,) = found.diagnostics
+    assert reported.severity == "error"
+    assert reported.values["left_out"] == "visual"
+    assert reported.origin.line == 4
 
 
 def test_default_and_stated_inertia():
@@ -456,23 +456,23 @@ def test_a_ball_turns_freely_whatever_its_axis_says():
     axis = "<axis><xyz>0 0 1</xyz><dynamics><damping>10</damping></dynamics></axis>"
     found = robot(BAD_JOINT.format("ball", ENDS + axis))
     assert found.joint("j").axis == m.Axis()
-    (told,) = found.diagnostics
-    assert (named(told), told.values["tag"]) == ("not-simulated", "axis")
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["tag"]) == ("not-simulated", "axis")
 
 
 @pytest.mark.parametrize(("first", "second"), [("0 0 1", (0, 1, 0)), ("0 1 0", (1, 0, 0))])
 def test_a_universal_joint_without_a_second_axis_takes_y_where_it_can(first, second):
     found = robot(BAD_JOINT.format("universal", f"{ENDS}<axis><xyz>{first}</xyz></axis>"))
     assert found.joint("j").axis2.xyz == second
-    (told,) = found.diagnostics
-    assert (named(told), told.values["missing"]) == ("default-used", "axis2")
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["missing"]) == ("default-used", "axis2")
 
 
 def test_a_joint_without_an_axis_turns_about_z():
     found = robot(BAD_JOINT.format("revolute", ENDS))
     assert found.joint("j").axis.xyz == (0, 0, 1)
-    (told,) = found.diagnostics
-    assert (named(told), told.values["missing"]) == ("default-used", "axis")
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["missing"]) == ("default-used", "axis")
 
 
 def test_a_fixed_joint_may_name_the_world_as_its_child():
@@ -561,10 +561,10 @@ def test_a_gripper_is_reported_as_idle_with_what_acts():
     text = """<sdf version="1.7"><model name="m"><link name="a"/><gripper name="g"><grasp_check>
       <attach_steps>20</attach_steps></grasp_check><gripper_link>a</gripper_link>
       <palm_link>a</palm_link></gripper></model></sdf>"""
-    (told,) = load_text(text, file="gripper.sdf").diagnostics
-    assert told.severity == "warning"
-    assert (named(told), told.values["tag"]) == ("not-simulated", "gripper")
-    assert told.origin.line == 1
+    (reported,) = load_text(text, file="gripper.sdf").diagnostics
+    assert reported.severity == "warning"
+    assert (named(reported), reported.values["tag"]) == ("not-simulated", "gripper")
+    assert reported.origin.line == 1
 
 
 def test_a_joint_s_sensor_is_carried_by_its_child():
@@ -593,8 +593,8 @@ def test_a_point_mass_that_moves_has_the_inertia_of_its_shape():
     across = 0.3 * (3 * 0.04**2 + 0.2**2) / 12
     assert (made.ixx, made.iyy, made.izz) == pytest.approx((0.3 * 0.04**2 / 2, across, across))
     assert made.pose == Pose((0, 0, 0.1))
-    (told,) = found.diagnostics
-    assert (named(told), told.values["link"]) == ("inertia-impossible", "base")
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["link"]) == ("inertia-impossible", "base")
 
 
 def test_a_rod_turns_about_itself_almost_freely():
@@ -620,15 +620,19 @@ def test_a_box_without_height_is_a_plate():
 
 def test_impossible_inertia_matters_where_it_moves():
     found = link(FLAT)
-    (told,) = found.diagnostics
-    assert (named(told), told.values["link"]) == ("inertia-impossible", "base")
-    assert told.origin.line == 4
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["link"]) == ("inertia-impossible", "base")
+    assert reported.origin.line == 4
     made = found.links[0].inertial
     a, b, c = sorted((made.ixx, made.iyy, made.izz))
     assert a + b == pytest.approx(c)
     robot(f'<static>true</static><link name="a">{FLAT}</link>')
-    (told,) = link(POINT).diagnostics
-    assert (told.code, told.severity, told.values["link"]) == (INERTIA_IMPOSSIBLE, "info", "base")
+    (reported,) = link(POINT).diagnostics
+    assert (reported.code, reported.severity, reported.values["link"]) == (
+        INERTIA_IMPOSSIBLE,
+        "info",
+        "base",
+    )
     with raises(INERTIA_IMPOSSIBLE, link="base", moments=(-1, 0, 0)):
         link(POINT.replace("<ixx>0", "<ixx>-1"))
     robot(
@@ -772,9 +776,9 @@ def test_an_inertia_that_is_no_number_is_the_default():
     found = link("<inertial><mass>2</mass><inertia><ixx>nan</ixx><iyy>1</iyy></inertia></inertial>")
     inertial = found.links[0].inertial
     assert (inertial.mass, inertial.ixx, inertial.iyy, inertial.izz) == (2, 1, 1, 1)
-    (told,) = found.diagnostics
-    assert told.severity == "warning"
-    assert (named(told), told.values["missing"]) == ("default-used", "inertia")
+    (reported,) = found.diagnostics
+    assert reported.severity == "warning"
+    assert (named(reported), reported.values["missing"]) == ("default-used", "inertia")
 
 
 def test_a_static_model_may_state_any_mass():
@@ -789,8 +793,8 @@ def test_names_with_a_prefix_are_for_other_programs_and_reported_once():
         <fdir1 gz:expressed_in="a">1 0 0</fdir1></ode></friction></surface></collision></link>
         <static>0</static><static>0</static>"""
     )
-    infos = [told for told in found.diagnostics if told.severity == "info"]
-    assert [(named(told), told.values["tag"]) for told in infos] == [
+    infos = [reported for reported in found.diagnostics if reported.severity == "info"]
+    assert [(named(reported), reported.values["tag"]) for reported in infos] == [
         ("not-simulated", "gz:semantics"),
         ("not-simulated", "my:colour"),
         ("tag-ignored", "static"),
@@ -810,11 +814,11 @@ def test_a_joint_to_a_link_that_is_not_there_is_left_out(ends, missing):
         + f'<joint name="k" type="fixed">{ENDS}</joint>'
     )
     assert [each.name for each in found.joints] == ["k"]
-    (told,) = found.diagnostics
-    assert (told.severity, told.origin.file, told.origin.line) == ("error", "m.sdf", 3)
-    assert told.code.name == "joint-link-unknown"
-    assert (told.values["joint"], told.values["left_out"]) == ("j", "joint")
-    assert missing == f'{told.values["end"]} link "{told.values["name"]}"'
+    (reported,) = found.diagnostics
+    assert (reported.severity, reported.origin.file, reported.origin.line) == ("error", "m.sdf", 3)
+    assert reported.code.name == "joint-link-unknown"
+    assert (reported.values["joint"], reported.values["left_out"]) == ("j", "joint")
+    assert missing == f'{reported.values["end"]} link "{reported.values["name"]}"'
 
 
 def test_what_needs_a_missing_part_reports_the_missing_part():
@@ -835,9 +839,9 @@ def test_a_second_collision_of_a_name_gets_another():
     (link,) = found.links
     assert [each.name for each in link.collisions] == ["c", "c_2", "c_1"]
     assert [each.name for each in link.visuals] == ["c"]
-    (told,) = [each for each in found.diagnostics if each.code.name == "name-taken"]
-    assert told.severity == "warning"
-    assert told.values["renamed"] == "c_2"
+    (reported,) = [each for each in found.diagnostics if each.code.name == "name-taken"]
+    assert reported.severity == "warning"
+    assert reported.values["renamed"] == "c_2"
 
 
 def test_a_joint_to_a_missing_part_goes_with_it():
@@ -854,9 +858,9 @@ def test_a_joint_to_a_missing_part_goes_with_it():
 def test_a_missing_part_of_a_model_costs_the_part():
     found = robot("<link name='a'/><include><uri>model://nothing_there</uri></include>")
     assert [each.name for each in found.links] == ["a"]
-    (told,) = found.diagnostics
-    assert told.severity == "error"
-    assert told.values["left_out"] == "include"
+    (reported,) = found.diagnostics
+    assert reported.severity == "error"
+    assert reported.values["left_out"] == "include"
 
 
 def test_ros2_control_of_a_model_is_read():
@@ -879,9 +883,9 @@ def test_a_moving_link_without_inertia_or_shape_is_a_point_mass():
         <joint name="steer" type="revolute"><parent>base</parent>
         <child>knuckle</child><axis><xyz>0 0 1</xyz></axis></joint>"""
     )
-    (told,) = found.diagnostics
-    assert told.code is INERTIA_IMPOSSIBLE
-    assert told.severity == "info"
+    (reported,) = found.diagnostics
+    assert reported.code is INERTIA_IMPOSSIBLE
+    assert reported.severity == "info"
     assert found.links[1].inertial.mass == 0.1
 
 
@@ -898,5 +902,5 @@ def test_a_moving_link_without_inertia_or_shape_is_a_point_mass():
 def test_a_length_of_0_is_made_a_millimetre(geometry, expected):
     found = link(f'<visual name="v"><geometry>{geometry}</geometry></visual>')
     assert found.links[0].visuals[0].shape == expected
-    (told,) = found.diagnostics
-    assert (named(told), told.values["stated"].strip("0.")) == ("value-ignored", "")
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["stated"].strip("0.")) == ("value-ignored", "")

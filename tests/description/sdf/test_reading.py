@@ -27,9 +27,9 @@ def diagnostics(*parts):
     ],
 )
 def test_diagnostics_of_one_line_differ_by_the_name_of_their_element(part, code):
-    told = coded(diagnostics(part.format("a"), part.format("b")), code)
-    assert [each.values["element"] for each in told] == ["a", "b"]
-    assert {str(each.origin) for each in told} == {"<string>:1"}
+    reported = coded(diagnostics(part.format("a"), part.format("b")), code)
+    assert [each.values["element"] for each in reported] == ["a", "b"]
+    assert {str(each.origin) for each in reported} == {"<string>:1"}
 
 
 @pytest.mark.parametrize("severity", ["info", "warning"])

@@ -77,8 +77,8 @@ def test_physics_scene_and_the_rest():
     assert not found.shadows
     assert found.spherical_coordinates.find("latitude_deg").text == "48"
     assert found.plugins[0].filename == "libgazebo_ros_state.so"
-    told = sorted((named(d), d.values["tag"]) for d in found.diagnostics)
-    assert told == [("tag-ignored", "ode"), ("tag-ignored", "sky"), ("tag-repeated", "physics")]
+    reported = sorted((named(d), d.values["tag"]) for d in found.diagnostics)
+    assert reported == [("tag-ignored", "ode"), ("tag-ignored", "sky"), ("tag-repeated", "physics")]
     assert {d.severity for d in found.diagnostics} == {"info"}
 
 
@@ -89,9 +89,9 @@ def test_gravity_stood_in_the_physics_before():
       <constraints/></ode></physics>"""
     found = world(oldest, "1.3")
     assert found.physics.max_step_size == 0.005
-    (told,) = found.diagnostics
-    assert (told.severity, told.origin.line) == ("info", 3)
-    assert (named(told), told.values["tag"]) == ("tag-ignored", "ode")
+    (reported,) = found.diagnostics
+    assert (reported.severity, reported.origin.line) == ("info", 3)
+    assert (named(reported), reported.values["tag"]) == ("tag-ignored", "ode")
 
 
 def test_lights():
@@ -288,9 +288,9 @@ def test_a_joint_of_several_degrees_of_freedom_is_reported():
     turned = '<link name="ball"><pose>2 1 0 0.2 0.3 0</pose></link>'
     found = world(saved(0, 0, ball, turned))
     assert found.models[0].joint_positions == ()
-    (told,) = found.diagnostics
-    assert told.severity == "warning"
-    assert named(told) == "not-simulated"
+    (reported,) = found.diagnostics
+    assert reported.severity == "warning"
+    assert named(reported) == "not-simulated"
 
 
 @pytest.mark.parametrize(
@@ -323,10 +323,10 @@ def test_a_missing_model_costs_the_one_model(uri, code, tmp_path):
     save_model(tmp_path, "walker", '<actor name="walker"/>')
     found = world(f"<include><uri>{uri}</uri></include>" + box("a"), folder=tmp_path)
     assert [model.name for model in found.models] == ["a"]
-    (told,) = found.diagnostics
-    assert told.severity == "error"
-    assert (named(told), told.values["left_out"]) == (code, "include")
-    assert told.origin.line >= 2
+    (reported,) = found.diagnostics
+    assert reported.severity == "error"
+    assert (named(reported), reported.values["left_out"]) == (code, "include")
+    assert reported.origin.line >= 2
 
 
 @pytest.mark.parametrize(
@@ -343,10 +343,10 @@ def test_an_include_that_names_nothing_costs_itself_alone(include, code, tmp_pat
     file.write_text(f'<sdf version="1.6"><world name="w">\n{include}{box("a")}</world></sdf>')
     found = load_world(file)
     assert [model.name for model in found.models] == ["a"]
-    (told,) = found.diagnostics
-    assert told.severity == "error"
-    assert (named(told), told.values["left_out"]) == (code, "include")
-    assert (told.origin.file, told.origin.line) == (str(file), 2)
+    (reported,) = found.diagnostics
+    assert reported.severity == "error"
+    assert (named(reported), reported.values["left_out"]) == (code, "include")
+    assert (reported.origin.file, reported.origin.line) == (str(file), 2)
 
 
 def test_a_package_of_a_plain_world_is_found(tmp_path):
@@ -397,21 +397,23 @@ def test_a_joint_between_models():
 
 
 def test_a_joint_of_the_world_that_cannot_act_is_reported():
-    (told,) = world(JOINED.format(type="prismatic", parent="a", child="b"), "1.10").diagnostics
-    assert (told.severity, told.origin.line) == ("error", 6)
-    assert (named(told), told.values["name"]) == ("element-left-out", "j")
+    (reported,) = world(JOINED.format(type="prismatic", parent="a", child="b"), "1.10").diagnostics
+    assert (reported.severity, reported.origin.line) == ("error", 6)
+    assert (named(reported), reported.values["name"]) == ("element-left-out", "j")
     damped = JOINED.format(type="revolute", parent="a", child="b").replace(
         "<xyz>", "<dynamics><damping>1</damping></dynamics><xyz>"
     )
-    (told,) = world(damped, "1.10").diagnostics
-    assert told.severity == "warning"
-    assert (named(told), told.values["joint"]) == ("not-simulated", "j")
+    (reported,) = world(damped, "1.10").diagnostics
+    assert reported.severity == "warning"
+    assert (named(reported), reported.values["joint"]) == ("not-simulated", "j")
     with pytest.raises(DescriptionError) as caught:
         world(JOINED.format(type="fixed", parent="a", child="c"), "1.10")
     assert named(caught.value) == "joint-link-unknown"
     gone = "<include><uri>model://c</uri></include>"
-    _, told = world(gone + JOINED.format(type="fixed", parent="a", child="c"), "1.10").diagnostics
-    assert told.values["left_out"] == "joint"
+    _, reported = world(
+        gone + JOINED.format(type="fixed", parent="a", child="c"), "1.10"
+    ).diagnostics
+    assert reported.values["left_out"] == "joint"
 
 
 def test_a_saved_state_reaches_nested_models_and_states_motion():
@@ -422,18 +424,18 @@ def test_a_saved_state_reaches_nested_models_and_states_motion():
           <model name="in"><link name="i"><pose>0 2 9 0 0 0</pose></link></model></model></state>"""
     )
     assert found.models[0].link("in::i").pose.position == (0, 0, 9)
-    (told,) = found.diagnostics
-    assert (named(told), told.values["tag"]) == ("not-simulated", "velocity")
-    assert told.origin.line == 5
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["tag"]) == ("not-simulated", "velocity")
+    assert reported.origin.line == 5
 
 
 @pytest.mark.parametrize("tag", ["actor", "population", "road"])
 def test_what_is_not_simulated_is_reported_by_name(tag):
     found = world(f'<{tag} name="it"><pose>0 0 0 0 0 0</pose></{tag}>' + box("a"))
     assert [model.name for model in found.models] == ["a"]
-    (told,) = found.diagnostics
-    assert told.severity == "warning"
-    assert (named(told), told.values["tag"]) == ("not-simulated", tag)
+    (reported,) = found.diagnostics
+    assert reported.severity == "warning"
+    assert (named(reported), reported.values["tag"]) == ("not-simulated", tag)
 
 
 def test_a_model_that_needs_a_missing_part_is_left_out():
@@ -447,9 +449,9 @@ def test_a_model_that_needs_a_missing_part_is_left_out():
     )
     assert [model.name for model in found.models] == ["a"]
     assert {each.severity for each in found.diagnostics} == {"error"}
-    told = [(each.values["name"], each.values["left_out"]) for each in found.diagnostics]
+    reported = [(each.values["name"], each.values["left_out"]) for each in found.diagnostics]
     missing = ("nothing_there", "include")
-    assert told == [missing, ("n::b", "model"), missing, ("shelf", "model")]
+    assert reported == [missing, ("n::b", "model"), missing, ("shelf", "model")]
 
 
 def test_a_static_model_stays_static_in_another(tmp_path):
@@ -470,16 +472,16 @@ def test_a_static_model_stays_static_in_another(tmp_path):
 def test_a_model_without_links_is_left_out():
     found = world(box("a") + '<model name="empty"/>')
     assert [model.name for model in found.models] == ["a"]
-    (told,) = found.diagnostics
-    assert told.severity == "warning"
-    assert (named(told), told.values["left_out"]) == ("model-empty", "model")
+    (reported,) = found.diagnostics
+    assert reported.severity == "warning"
+    assert (named(reported), reported.values["left_out"]) == ("model-empty", "model")
 
 
 def test_only_the_first_world_is_run():
     found = world(box("a") + "</world><world name='b'><x/>")
     assert found.name == "w"
-    (told,) = found.diagnostics
-    assert (named(told), told.values["name"]) == ("element-left-out", "b")
+    (reported,) = found.diagnostics
+    assert (named(reported), reported.values["name"]) == ("element-left-out", "b")
 
 
 @pytest.mark.parametrize("uri", ["tree", "file://tree", "model://tree"])
@@ -494,9 +496,9 @@ def test_a_damaged_model_config_is_done_without(tmp_path):
     (tmp_path / "models/door/model.config").write_text("<model>door & frame</model>")
     found = world("<include><uri>model://door</uri></include>", folder=tmp_path)
     assert [model.name for model in found.models] == ["door"]
-    (told,) = found.diagnostics
-    assert told.severity == "info"
-    assert named(told) == "xml-malformed"
+    (reported,) = found.diagnostics
+    assert reported.severity == "info"
+    assert named(reported) == "xml-malformed"
 
 
 def test_the_default_plugin_is_none():
@@ -570,10 +572,10 @@ def test_worlds_of_others_load_or_lack_something():
             assert error.origin is not None
             continue
         loaded += 1
-        for told in found.diagnostics:
-            assert told.origin is not None
-            if told.severity == "error":
-                assert told.code is files.FILE_MISSING
+        for reported in found.diagnostics:
+            assert reported.origin is not None
+            if reported.severity == "error":
+                assert reported.code is files.FILE_MISSING
     assert loaded >= 20
 
 
@@ -581,8 +583,8 @@ def test_of_models_of_one_name_the_first_keeps_it():
     names = ("a", "b", "a", "a_1", "a", "b")
     found = world("".join(map(box, names)))
     assert [each.name for each in found.models] == ["a", "b", "a_2", "a_1", "a_3", "b_1"]
-    told = [each.values["renamed"] for each in found.diagnostics if named(each) == "name-taken"]
-    assert told == ["a_2", "a_3", "b_1"]
+    reported = [each.values["renamed"] for each in found.diagnostics if named(each) == "name-taken"]
+    assert reported == ["a_2", "a_3", "b_1"]
 
 
 def test_a_model_folder_whose_file_is_yet_to_be_made_costs_itself(tmp_path, monkeypatch):
@@ -594,6 +596,6 @@ def test_a_model_folder_whose_file_is_yet_to_be_made_costs_itself(tmp_path, monk
     )
     found = world("<include><uri>model://iris</uri></include>" + box("a"), folder=tmp_path)
     assert [each.name for each in found.models] == ["a"]
-    (told,) = found.diagnostics
-    assert told.severity == "error"
-    assert (named(told), told.values["left_out"]) == ("file-missing", "include")
+    (reported,) = found.diagnostics
+    assert reported.severity == "error"
+    assert (named(reported), reported.values["left_out"]) == ("file-missing", "include")

@@ -70,10 +70,10 @@ def test_several_are_reported_together():
     found = robot(
         *(link(n, BALL.format("collision")) for n in ("base", "a", "b")), joint("a"), joint("b")
     )
-    (told,) = found.diagnostics
-    assert told.code.name == "inertia-missing"
-    assert told.values["links"] == ("base", "a", "b")
-    assert told.values["masses"] == pytest.approx((4.19,) * 3, abs=0.01)
+    (reported,) = found.diagnostics
+    assert reported.code.name == "inertia-missing"
+    assert reported.values["links"] == ("base", "a", "b")
+    assert reported.values["masses"] == pytest.approx((4.19,) * 3, abs=0.01)
 
 
 @pytest.mark.parametrize("mass", ["0", "-1"])
@@ -127,8 +127,8 @@ def untouchable(*parts):
 def test_a_robot_that_nothing_holds_is_reported():
     visual, collision = BOX.format("visual"), BOX.format("collision")
     mass = MASS.format(m=1, i=0.1)
-    (told,) = untouchable(link("base", mass, visual))
-    assert told.values["link"] == "base"
+    (reported,) = untouchable(link("base", mass, visual))
+    assert reported.values["link"] == "base"
     assert not untouchable(link("base", mass, visual, collision))
     assert not untouchable(link("base", mass, visual), link("a", collision), joint("a", "fixed"))
     assert not untouchable(link("base", mass))

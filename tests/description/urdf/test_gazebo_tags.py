@@ -31,7 +31,7 @@ def on(reference, *content):
     return f'<gazebo reference="{reference}">' + "".join(content) + "</gazebo>"
 
 
-def told(description):
+def reported(description):
     return [placed(each) for each in description.diagnostics]
 
 
@@ -105,15 +105,15 @@ def test_material_overrides_the_colour():
 def test_a_material_that_cannot_be_read_costs_no_more_than_itself():
     robot = load(on("base", "<material><diffuse>'1 0 0 1'</diffuse></material>"))
     assert robot.link("base").visuals[0].material.diffuse == (0.5, 0.5, 0.5, 1)
-    (told,) = robot.diagnostics
-    assert placed(told) == "robot.urdf:2 warning value-ignored"
-    assert told.values["stated"] == "'1"
+    (reported,) = robot.diagnostics
+    assert placed(reported) == "robot.urdf:2 warning value-ignored"
+    assert reported.values["stated"] == "'1"
 
 
 def test_unknown_material_keeps_the_colour_and_is_reported():
     robot = load(on("base", "<material>Gazebo/Bleu</material>"))
     assert robot.link("base").visuals[0].material.diffuse == (0.5, 0.5, 0.5, 1)
-    assert told(robot) == ["robot.urdf:2 warning material-unknown Gazebo/Blue"]
+    assert reported(robot) == ["robot.urdf:2 warning material-unknown Gazebo/Blue"]
 
 
 def test_visual_as_sdf_states_it():
@@ -125,7 +125,7 @@ def test_visual_as_sdf_states_it():
             "<collision name='felt'><laser_retro>3</laser_retro></collision>",
         )
     )
-    assert told(robot) == []
+    assert reported(robot) == []
     (visual,) = robot.link("base").visuals
     assert visual.material.diffuse == (1, 0, 0, 1)
     assert visual.transparency == 0.5

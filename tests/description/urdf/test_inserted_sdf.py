@@ -128,9 +128,9 @@ SOUND = '<link name="sound"><pose>0 0 2 0 0 0</pose></link>'
 )
 def test_a_mistake_costs_its_element_alone(part, code):
     robot = load(SOUND, part)
-    (told,) = robot.diagnostics
-    assert placed(told) == f"robot.urdf:3 error {code}"
-    assert told.values["left_out"] in ("link", "joint", "frame")
+    (reported,) = robot.diagnostics
+    assert placed(reported) == f"robot.urdf:3 error {code}"
+    assert reported.values["left_out"] in ("link", "joint", "frame")
     assert {link.name for link in robot.links} == {"base", "mast", "arm", "sound"}
     assert {each.name for each in robot.joints} == {"weld", "hinge"}
 

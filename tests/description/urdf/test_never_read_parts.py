@@ -16,11 +16,11 @@ def test_leftovers_are_notes_and_the_unknown_is_a_warning():
         <dynamics damping="1" D="2"/><limit effort="1" velocity="1" k_velocity="3" vlocity="2"/>
         <joint_properties damping="1"/></joint></robot>"""
     )
-    told = [
+    reported = [
         (each.severity, named(each), each.values.get("attribute", each.values["tag"]))
         for each in robot.diagnostics
     ]
-    assert told == [
+    assert reported == [
         ("info", "tag-ignored", "type"),
         ("info", "tag-ignored", "name"),
         ("info", "tag-ignored", "D"),

@@ -49,7 +49,7 @@ def load(text, **more):
     return load_text(text, file="robot.urdf", **more)
 
 
-def told(description):
+def reported(description):
     return [placed(each) for each in description.diagnostics]
 
 
@@ -110,9 +110,9 @@ def test_a_joint_with_all_its_parts():
         xyz=(0, 0, 1), lower=-1, upper=2, effort=3, velocity=4, damping=0.5, friction=0.6
     )
     assert robot.link("b").pose == Pose.from_xyz_rpy((1, 0, 0), (0, 0, 1))
-    (told,) = robot.diagnostics
-    assert (told.severity, told.code.name) == ("info", "tag-ignored")
-    assert (told.values["tag"], told.values["parent"]) == ("calibration", "joint")
+    (reported,) = robot.diagnostics
+    assert (reported.severity, reported.code.name) == ("info", "tag-ignored")
+    assert (reported.values["tag"], reported.values["parent"]) == ("calibration", "joint")
 
 
 @pytest.mark.parametrize(
@@ -144,9 +144,9 @@ def test_an_effort_or_velocity_below_zero_means_no_limit(what):
     limit = f'<limit {what}="-1"/>'
     robot = load_text(urdf(link("a"), link("b"), joint("j", "a", "b", limit, "continuous")))
     assert getattr(robot.joints[0].axis, what) is None
-    (told,) = robot.diagnostics
-    assert told.code.name == "value-ignored"
-    assert (told.values["attribute"], told.values["stated"]) == (what, -1)
+    (reported,) = robot.diagnostics
+    assert reported.code.name == "value-ignored"
+    assert (reported.values["attribute"], reported.values["stated"]) == (what, -1)
 
 
 def test_mimic():
@@ -505,13 +505,13 @@ def test_a_box_of_negative_size_is_as_large_without_the_sign():
     )
     robot = load(text)
     assert robot.links[0].collisions[0].shape == m.Box(size=(1, 2, 3))
-    assert told(robot)[0] == "robot.urdf:3 warning value-ignored"
+    assert reported(robot)[0] == "robot.urdf:3 warning value-ignored"
     assert robot.diagnostics[0].values["stated"] == (1, -2, 3)
 
 
 @pytest.mark.parametrize(("text", "warning"), WARNINGS)
 def test_warnings(text, warning):
-    assert warning in told(load(text))
+    assert warning in reported(load(text))
 
 
 @pytest.mark.parametrize(
@@ -554,7 +554,7 @@ def test_point_masses_are_good_enough_where_they_are_fixed():
     point = '<inertial><mass value="0.1"/></inertial>'
     robot = load(urdf(link("a"), link("b", point), joint("j", "a", "b")))
     assert robot.link("b").inertial.mass == 0.1
-    assert told(robot) == ["robot.urdf:3 info inertia-impossible"]
+    assert reported(robot) == ["robot.urdf:3 info inertia-impossible"]
 
 
 def test_a_warning_is_reported_once_for_a_macro_called_twice():

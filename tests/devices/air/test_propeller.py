@@ -151,14 +151,14 @@ def test_propellers_that_turn_one_way_turn_the_body_the_other(make):
 
 def test_speeds_approach_a_command_with_two_time_constants(make):
     world = fly(make)
-    told = world.mailbox("/bee/motor_speed/_0", size=10_000)
+    reported = world.mailbox("/bee/motor_speed/_0", size=10_000)
     step = world.session.simulation.step_ns * 1e-9
     command(world, [100, 0, 0, 0])
     world.run(0.2)
-    up = [message.data * 10 for message in told.drain()]
+    up = [message.data * 10 for message in reported.drain()]
     command(world, [0, 0, 0, 0])
     world.run(0.2)
-    down = [message.data * 10 for message in told.drain()]
+    down = [message.data * 10 for message in reported.drain()]
     # The joint's speed is published after a step, but set before it.
     count = round(UP / step)
     assert up[count] == pytest.approx(100 * (1 - math.exp(-count * step / UP)), abs=100 * step / UP)
@@ -208,8 +208,8 @@ def test_a_command_for_fewer_motors_is_ignored_and_reported(make):
     world = fly(make)
     command(world, [HOVER, HOVER])
     world.run(0.1)
-    told = coded(world, running.COMMAND_IGNORED, speeds=2)
-    assert len(told) == 2
+    reported = coded(world, running.COMMAND_IGNORED, speeds=2)
+    assert len(reported) == 2
 
 
 def test_new_gazebos_motor_listens_under_the_models_name_by_default(make):

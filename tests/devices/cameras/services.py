@@ -24,11 +24,11 @@ def configure(world, name, **values):
 
 
 def values_of(config):
-    told = to_dict(config)
+    reported = to_dict(config)
     return {
         item["name"]: item["value"]
         for field in ("bools", "ints", "strs", "doubles")
-        for item in told[field]
+        for item in reported[field]
     }
 
 

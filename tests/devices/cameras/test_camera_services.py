@@ -73,9 +73,11 @@ def test_topics_and_services_are_gazebos(make):
 )
 def test_parameters_are_described_as_gazebo_does(make, name, expected):
     world = make.world(make.sdf(sensor(plugin=ROS1)))
-    told = take(world, f"{name}/parameter_descriptions")
-    (group,) = told.groups
-    defaults, least, most = (values_of(config) for config in (told.dflt, told.min, told.max))
+    reported = take(world, f"{name}/parameter_descriptions")
+    (group,) = reported.groups
+    defaults, least, most = (
+        values_of(config) for config in (reported.dflt, reported.min, reported.max)
+    )
     assert {
         p.name: (p.type, p.level, defaults[p.name], least[p.name], most[p.name])
         for p in group.parameters
@@ -248,8 +250,8 @@ def test_a_camera_that_cannot_be_made_leaves_nothing_behind(make):
     before = (topic_names(world), service_names(world))
     with_preset = sensor(plugin=ROS1)
     world.session.spawn(make.sdf(with_preset))
-    (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert told.code is running.RECONFIGURE_UNAVAILABLE
+    (reported,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert reported.code is running.RECONFIGURE_UNAVAILABLE
     world.model("cam_eye").delete()
     assert (topic_names(world), service_names(world)) == before
     # A topic of another type stands in the way of the last one that it opens.

@@ -116,9 +116,9 @@ def test_the_plugins_own_numbers_bend_too(make):
 def test_numbers_that_contradict_are_reported(make):
     model = sensor(inside=tags(BARREL), plugin="<distortionK1>0.5</distortionK1>")
     world = make.world(make.sdf(model))
-    (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert told.code is devices.PLUGIN_PARAMETER_IGNORED
-    assert told.values["parameter"] == "distortion"
+    (reported,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert reported.code is devices.PLUGIN_PARAMETER_IGNORED
+    assert reported.values["parameter"] == "distortion"
 
 
 def test_the_centre_of_a_distortion(make):

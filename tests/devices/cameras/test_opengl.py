@@ -52,10 +52,10 @@ def test_a_machine_without_opengl_says_so_once_and_drives_on(make, rosbots, monk
     assert len(info.drain()) == 61
     assert len(odometry.drain()) == 201
     assert world.model("rosbots").pose.x > 0.5
-    (told,) = coded(
+    (reported,) = coded(
         world, world_codes.OPENGL_MISSING, packages=("libegl1", "libgl1", "libgl1-mesa-dri")
     )
-    assert told.severity == "warning"
+    assert reported.severity == "warning"
 
 
 SCRIPT = """
@@ -120,10 +120,10 @@ def test_opengl_that_is_named_and_missing_is_reported_and_no_more(tmp_path):
         timeout=60,
         check=False,
     )
-    counts, *told = done.stdout.splitlines()
+    counts, *reported = done.stdout.splitlines()
     assert counts.split() == ["0", "True", "1"], done.stderr
-    assert told[:2] == [
+    assert reported[:2] == [
         str(world_codes.OPENGL_MISSING),
         "('libegl1', 'libgl1', 'libgl1-mesa-dri')",
     ]
-    assert "no OpenGL here" in told[2]
+    assert "no OpenGL here" in reported[2]

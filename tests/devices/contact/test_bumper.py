@@ -196,11 +196,11 @@ def test_every_spelling_of_a_collision_works(make, rosbots, name):
 def test_a_wrong_collision_is_reported_with_the_likely_one(make, rosbots):
     world = make.world()
     world.session.spawn(naming(make, rosbots, "base_link_colision"), pose=Pose((0, 0, 0.05)))
-    (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert told.code is devices.CONTACT_COLLISION_UNKNOWN
-    assert told.values["collision"] == "base_link_colision"
-    assert told.values["meant"] == "base_link_collision"
-    assert told.origin is not None
+    (reported,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert reported.code is devices.CONTACT_COLLISION_UNKNOWN
+    assert reported.values["collision"] == "base_link_colision"
+    assert reported.values["meant"] == "base_link_collision"
+    assert reported.origin is not None
 
 
 @pytest.mark.wording

@@ -27,17 +27,17 @@ def vector(message):
 def test_the_ground_bears_the_weight(make, read):
     world = make.world(body(make, F3D, shape=BOX))
     world.run(1.0)
-    told = read(world, "/wrench", 0.1)
-    assert len(told) == 20
-    assert vector(told[-1].wrench.force) == pytest.approx([0, 0, MASS * G], abs=0.01)
-    assert vector(told[-1].wrench.torque) == pytest.approx([0, 0, 0], abs=0.01)
-    assert told[-1].header.frame_id == "world"
+    reported = read(world, "/wrench", 0.1)
+    assert len(reported) == 20
+    assert vector(reported[-1].wrench.force) == pytest.approx([0, 0, MASS * G], abs=0.01)
+    assert vector(reported[-1].wrench.torque) == pytest.approx([0, 0, 0], abs=0.01)
+    assert reported[-1].header.frame_id == "world"
 
 
 def test_what_falls_feels_nothing_and_what_is_pushed_the_push(make, read):
     world = make.world(body(make, F3D, pose="0 0 9 0 0 0"), ground=None)
     assert vector(read(world, "/wrench", 0.1)[-1].wrench.force) == pytest.approx([0, 0, 0])
     world.session.simulation.forces.wrench("body", "link", force=(1, 2, 3), torque=(0.1, 0, 0.2))
-    told = read(world, "/wrench", 0.1)[-1].wrench
-    assert vector(told.force) == pytest.approx([1, 2, 3])
-    assert vector(told.torque) == pytest.approx([0.1, 0, 0.2], abs=1e-9)
+    reported = read(world, "/wrench", 0.1)[-1].wrench
+    assert vector(reported.force) == pytest.approx([1, 2, 3])
+    assert vector(reported.torque) == pytest.approx([0.1, 0, 0.2], abs=1e-9)

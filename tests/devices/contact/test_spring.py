@@ -78,11 +78,11 @@ def test_it_publishes_where_it_is(make):
     world = make.world(body(make, HAND.format(""), pose="1 2 3 0 0 0"), ground=None)
     box = world.mailbox("/tf")
     world.run(0.1)
-    told = [each for message in box.drain() for each in message.transforms]
-    assert {(each.header.frame_id, each.child_frame_id) for each in told} == {
+    reported = [each for message in box.drain() for each in message.transforms]
+    assert {(each.header.frame_id, each.child_frame_id) for each in reported} == {
         ("world", "hog_actual")
     }
-    assert vector(told[-1].transform.translation) == pytest.approx([1, 2, 3], abs=1e-6)
+    assert vector(reported[-1].transform.translation) == pytest.approx([1, 2, 3], abs=1e-6)
 
 
 def test_a_stiff_pull_on_a_light_link_is_stable(make):

@@ -169,9 +169,9 @@ def test_a_scale_feels_what_lies_on_it_for_as_long_as_it_lies(  # noqa: PLR0917
 
 def test_a_frame_of_a_joints_wrench_is_reported_as_idle(make):
     tags = "<jointName>wrist</jointName><frame_name>beam</frame_name>"
-    (told,) = make.world(make.sdf(arm(ft(tags)))).diagnostics
-    assert told.code is devices.PLUGIN_PARAMETER_IGNORED
-    assert told.values["parameter"] == "frame_name"
+    (reported,) = make.world(make.sdf(arm(ft(tags)))).diagnostics
+    assert reported.code is devices.PLUGIN_PARAMETER_IGNORED
+    assert reported.values["parameter"] == "frame_name"
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ class Cup(Hand):
         self.lift(-0.14, speed=-0.1)
 
 
-def told(world, seconds=0.02):
+def reported(world, seconds=0.02):
     box = world.mailbox("/cup/grasping")
     world.run(seconds)
     return {message.data for message in box.drain()}
@@ -29,17 +29,17 @@ def told(world, seconds=0.02):
 
 def test_a_cup_that_is_on_carries_what_it_was_put_on(make, ask):
     hand = Cup(make, CUP.format(ROS1))
-    assert told(hand.world) == {False}
+    assert reported(hand.world) == {False}
     ask(hand.world, "/cup/on")
     hand.lift(0.1)
     assert hand.cube.z == pytest.approx(SIDE / 2 + 0.1, abs=2e-3)
     assert hand.cube.yaw == pytest.approx(0.0, abs=1e-3)
-    assert told(hand.world) == {True}
+    assert reported(hand.world) == {True}
     ask(hand.world, "/cup/off")
     # It falls 10 cm, and a while on is still there.
     hand.world.run(math.sqrt(2 * 0.1 / 9.8) + 0.3)
     assert hand.cube.z == pytest.approx(SIDE / 2, abs=2e-3)
-    assert told(hand.world) == {False}
+    assert reported(hand.world) == {False}
 
 
 def test_what_is_beyond_reach_is_taken_when_the_cup_comes_near(make, ask):
@@ -47,9 +47,9 @@ def test_what_is_beyond_reach_is_taken_when_the_cup_comes_near(make, ask):
     hand.lift(0.05)
     ask(hand.world, "/cup/on")
     hand.world.run(0.2)
-    assert told(hand.world) == {False}
+    assert reported(hand.world) == {False}
     hand.lift(-0.035, speed=-0.1)
-    assert told(hand.world) == {True}
+    assert reported(hand.world) == {True}
 
 
 def test_ros_2_s_cup_has_one_switch_a_reach_and_exceptions(make, ask):
@@ -58,17 +58,17 @@ def test_ros_2_s_cup_has_one_switch_a_reach_and_exceptions(make, ask):
     assert answer.success
     assert not ask(hand.world, "/cup/switch", data=True).success
     # 3 cm away, and it reaches 2.
-    assert told(hand.world) == {False}
+    assert reported(hand.world) == {False}
     spared = Cup(make, CUP.format(ROS2.format(0.04, "<fixed>cube</fixed>")))
     ask(spared.world, "/cup/switch", data=True)
-    assert told(spared.world) == {False}
+    assert reported(spared.world) == {False}
     taken = Cup(make, CUP.format(ROS2.format(0.04, "<fixed>other</fixed>")))
     ask(taken.world, "/cup/switch", data=True)
-    assert told(taken.world) == {True}
+    assert reported(taken.world) == {True}
 
 
 def test_a_reset_switches_the_cup_off(make, ask):
     hand = Cup(make, CUP.format(ROS1))
     ask(hand.world, "/cup/on")
     hand.world.reset()
-    assert told(hand.world) == {False}
+    assert reported(hand.world) == {False}

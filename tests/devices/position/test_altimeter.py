@@ -65,6 +65,6 @@ def test_what_classic_alone_has_is_reported(make):
     model = """<model name="m"><static>1</static><link name="l"><sensor name="a" type="{}"/>
       </link></model>"""
     for kind in ("altimeter", "logical_camera", "sonar", "wireless_receiver"):
-        (told,) = make.world(make.sdf(model.format(kind))).diagnostics
-        assert told.code is devices.SENSOR_WITHOUT_PLUGIN
-        assert told.origin is not None
+        (reported,) = make.world(make.sdf(model.format(kind))).diagnostics
+        assert reported.code is devices.SENSOR_WITHOUT_PLUGIN
+        assert reported.origin is not None

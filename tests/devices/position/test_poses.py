@@ -25,17 +25,17 @@ def test_poses_are_published_in_the_frame_of_what_a_part_belongs_to(make, read):
       <publish_collision_pose>1</publish_collision_pose>"""
     world = make.world(make.sdf(SWING.format(POSES.format(tags))), ground=None)
     world.session.simulation.set_joint_positions("swing", {"turn": 0.7})
-    told = transforms(read(world, "/model/swing/pose", 0.1)[-1])
-    assert set(told) == {"swing", "swing/base", "swing/arm", "swing/arm/c"}
-    arm = told["swing/arm"]
+    reported = transforms(read(world, "/model/swing/pose", 0.1)[-1])
+    assert set(reported) == {"swing", "swing/base", "swing/arm", "swing/arm/c"}
+    arm = reported["swing/arm"]
     assert arm.header.frame_id == "swing"
     place = arm.transform.translation
     assert (place.x, place.y) == pytest.approx((0.5 * math.cos(0.7), 0.5 * math.sin(0.7)), abs=1e-3)
-    model = told["swing"]
+    model = reported["swing"]
     assert model.header.frame_id == "test"
     assert model.transform.translation.z == pytest.approx(3)
     assert model.transform.rotation.z == pytest.approx(math.sin(0.25))
-    shape = told["swing/arm/c"]
+    shape = reported["swing/arm/c"]
     assert shape.header.frame_id == "swing/arm"
     assert shape.transform.translation.z == 0.2
 
@@ -48,6 +48,6 @@ def test_what_no_joint_moves_can_go_on_a_topic_of_its_own(make, read):
     moved = read(world, "/model/swing/pose", 1.0)
     assert {message.child_frame_id for message in moved} == {"swing/arm"}
     assert len(moved) == 51
-    told = still.drain()
-    assert {message.child_frame_id for message in told} == {"swing/base"}
-    assert len(told) == 11
+    reported = still.drain()
+    assert {message.child_frame_id for message in reported} == {"swing/base"}
+    assert len(reported) == 11

@@ -44,8 +44,8 @@ def model(sensor_text, *, bodies="", pose=f"0 0 {HEIGHT} 0 0 0"):
 
 def box(name, size, pose="0 0 0 0 0 0", *, visual=False, retro=None):
     kind = "visual" if visual else "collision"
-    told = f"<laser_retro>{retro}</laser_retro>" if retro is not None else ""
-    return f"""<{kind} name="{name}"><pose>{pose}</pose>{told}
+    reported = f"<laser_retro>{retro}</laser_retro>" if retro is not None else ""
+    return f"""<{kind} name="{name}"><pose>{pose}</pose>{reported}
       <geometry><box><size>{size}</size></box></geometry></{kind}>"""
 
 

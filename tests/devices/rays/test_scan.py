@@ -224,9 +224,9 @@ def test_a_scan_is_of_its_stamp(make):
         "<static>true</static>", ""
     )
     world = make.world(make.sdf(falling), step=step)
-    told = scans(world, 1.0)
-    assert len(told) == 51
-    for message in told:
+    reported = scans(world, 1.0)
+    assert len(reported) == 51
+    for message in reported:
         count = round((message.header.stamp.sec + message.header.stamp.nanosec * 1e-9) / step)
         assert message.ranges[0] == pytest.approx(
             height - 9.8 * step**2 * count * (count + 1) / 2, rel=1e-6

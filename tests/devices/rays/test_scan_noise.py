@@ -50,8 +50,8 @@ def test_a_bias_is_drawn_once(make):
     signs = set()
     for seed in range(8):
         text = sensor(samples=1, noise=noise)
-        told = scans(make.world(wall(make, 2.0), make.sdf(model(text)), seed=seed), 1.0)
-        (value,) = {float(message.ranges[0]) for message in told}
+        reported = scans(make.world(wall(make, 2.0), make.sdf(model(text)), seed=seed), 1.0)
+        (value,) = {float(message.ranges[0]) for message in reported}
         assert abs(value - 2.0) == pytest.approx(0.1, abs=1e-6)
         signs.add(value > 2.0)
     # As in Gazebo it may have either sign.

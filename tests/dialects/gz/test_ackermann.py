@@ -28,8 +28,8 @@ def test_gz_car_goes_round_at_the_rate_it_is_commanded(make, cart, read):
     world.publish("/model/cart/cmd_vel", linear_x=speed, angular_z=turn)
     world.run(2.0)
     start = world.model("cart").pose.yaw
-    told = read(world, "/model/cart/odometry", 5.0)
-    assert circle(path(told)) == pytest.approx(speed / turn, rel=0.02)
+    reported = read(world, "/model/cart/odometry", 5.0)
+    assert circle(path(reported)) == pytest.approx(speed / turn, rel=0.02)
     true_turn = math.remainder(world.model("cart").pose.yaw - start, 2 * math.pi)
     assert true_turn == pytest.approx(5.0 * turn, rel=0.03)
 

@@ -115,8 +115,8 @@ def test_a_control_surface_rolls_it(plane):
 def test_more_surfaces_than_stated_are_reported(plane):
     tags = SURFACE.format("hinge").replace("<num_ctrl_surfaces>1<", "<num_ctrl_surfaces>0<")
     made = plane(tags, flap=FLAP)
-    (told,) = coded(made.world, devices.PLUGIN_PARAMETER_IGNORED)
-    assert told.values["parameter"] == "control_surface"
+    (reported,) = coded(made.world, devices.PLUGIN_PARAMETER_IGNORED)
+    assert reported.values["parameter"] == "control_surface"
 
 
 def test_a_stalled_aeroplane_falls(plane):

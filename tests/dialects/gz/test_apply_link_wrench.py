@@ -81,7 +81,7 @@ def test_stated_wrenches_act_again_after_a_reset(space):
 
 def test_a_wrong_type_is_reported(space):
     world = space(WRENCH.format("one", "world"))
-    (told,) = coded(world, running.PLUGIN_LEFT_OUT)
-    assert told.values["cause"] == devices.PLUGIN_PARAMETER_INVALID.number
+    (reported,) = coded(world, running.PLUGIN_LEFT_OUT)
+    assert reported.values["cause"] == devices.PLUGIN_PARAMETER_INVALID.number
     world.run(0.1)
     assert speed(world, "one") == (0.0, 0.0, 0.0)

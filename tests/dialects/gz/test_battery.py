@@ -29,13 +29,13 @@ def cart(make, tags):
 def test_a_battery_loses_the_integral_of_its_current(make, read):
     """6 W at 12 V are 0.5 A: in 20 s 10 of its 36 C."""
     world = cart(make, NOW)
-    told = read(world, STATE, 20.0)[-1]
-    assert told.current == pytest.approx(0.5, rel=1e-6)
-    seconds = told.header.stamp.sec + told.header.stamp.nanosec * 1e-9
-    assert told.charge * 3600 == pytest.approx(36 - 0.5 * seconds, abs=1e-3)
-    assert told.percentage == pytest.approx(told.charge / 0.01)
-    assert told.voltage == 12
-    assert told.power_supply_status == told.POWER_SUPPLY_STATUS_DISCHARGING
+    reported = read(world, STATE, 20.0)[-1]
+    assert reported.current == pytest.approx(0.5, rel=1e-6)
+    seconds = reported.header.stamp.sec + reported.header.stamp.nanosec * 1e-9
+    assert reported.charge * 3600 == pytest.approx(36 - 0.5 * seconds, abs=1e-3)
+    assert reported.percentage == pytest.approx(reported.charge / 0.01)
+    assert reported.voltage == 12
+    assert reported.power_supply_status == reported.POWER_SUPPLY_STATUS_DISCHARGING
 
 
 def test_its_voltage_falls_with_its_charge_and_its_load(make, read):
@@ -43,25 +43,27 @@ def test_its_voltage_falls_with_its_charge_and_its_load(make, read):
       <open_circuit_voltage_linear_coef>-3</open_circuit_voltage_linear_coef>
       <resistance>0.2</resistance><initial_charge>0.006</initial_charge>"""
     world = cart(make, NOW + tags)
-    told = read(world, STATE, 3.0)[-1]
-    assert told.voltage == pytest.approx(12.6 - 3 * (1 - told.percentage) - 0.2 * told.current)
-    assert told.current == pytest.approx(6 / told.voltage, rel=1e-3)
+    reported = read(world, STATE, 3.0)[-1]
+    assert reported.voltage == pytest.approx(
+        12.6 - 3 * (1 - reported.percentage) - 0.2 * reported.current
+    )
+    assert reported.current == pytest.approx(6 / reported.voltage, rel=1e-3)
 
 
 def test_the_current_is_smoothed_by_its_time_constant(make, read):
     tags = "<start_draining>1</start_draining><smooth_current_tau>2</smooth_current_tau>"
     world = cart(make, tags)
-    told = read(world, STATE, 2.0)[-1]
-    assert told.header.stamp.sec == 2
-    seconds = 2 + told.header.stamp.nanosec * 1e-9
-    assert told.current == pytest.approx(0.5 * (1 - math.exp(-seconds / 2)), rel=1e-6)
+    reported = read(world, STATE, 2.0)[-1]
+    assert reported.header.stamp.sec == 2
+    seconds = 2 + reported.header.stamp.nanosec * 1e-9
+    assert reported.current == pytest.approx(0.5 * (1 - math.exp(-seconds / 2)), rel=1e-6)
 
 
 def test_it_drains_from_when_the_robot_is_driven(make, read):
     world = cart(make, "<smooth_current_tau>1e-4</smooth_current_tau>")
-    told = read(world, STATE, 1.0)[-1]
-    assert told.charge == single(0.01)
-    assert told.power_supply_status == told.POWER_SUPPLY_STATUS_FULL
+    reported = read(world, STATE, 1.0)[-1]
+    assert reported.charge == single(0.01)
+    assert reported.power_supply_status == reported.POWER_SUPPLY_STATUS_FULL
     world.publish("/model/cart/joint/axle/cmd_vel", data=1.0)
     assert read(world, STATE, 1.0)[-1].charge < single(0.01)
     world.reset()
@@ -89,20 +91,20 @@ def test_it_is_charged_up_to_nine_tenths(make, read):
     world = cart(make, tags)
     world.run(0.1)
     world.publish("/model/cart/battery/main/recharge/start", data=True)
-    told = read(world, STATE, 5.0)[-1]
-    assert told.current == pytest.approx(-1.0)
-    assert told.power_supply_status == told.POWER_SUPPLY_STATUS_CHARGING
-    assert told.charge == pytest.approx(0.005 + 5.0 / 3600, abs=2e-5)
+    reported = read(world, STATE, 5.0)[-1]
+    assert reported.current == pytest.approx(-1.0)
+    assert reported.power_supply_status == reported.POWER_SUPPLY_STATUS_CHARGING
+    assert reported.charge == pytest.approx(0.005 + 5.0 / 3600, abs=2e-5)
     assert read(world, STATE, 15.0)[-1].percentage == pytest.approx(0.9, abs=0.002)
     world.publish("/model/cart/battery/main/recharge/stop", data=True)
-    told = read(world, STATE, 0.5)[-1]
-    assert told.power_supply_status == told.POWER_SUPPLY_STATUS_FULL
+    reported = read(world, STATE, 0.5)[-1]
+    assert reported.power_supply_status == reported.POWER_SUPPLY_STATUS_FULL
 
 
 def test_an_empty_battery_is_reported_once_and_gives_nothing(make, read):
     world = cart(make, NOW + "<initial_charge>0.0001</initial_charge>")
-    told = read(world, STATE, 2.0)[-1]
-    assert (told.charge, told.current, told.percentage) == (0, 0, 0)
+    reported = read(world, STATE, 2.0)[-1]
+    assert (reported.charge, reported.current, reported.percentage) == (0, 0, 0)
     assert len(coded(world, running.BATTERY_EMPTY)) == 1
 
 

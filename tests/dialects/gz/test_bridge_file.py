@@ -43,7 +43,7 @@ def topics(world):
     return {topic.name: topic.type for topic in world.graph.topics()}
 
 
-def told(world):
+def reported(world):
     return [d.message for d in world.diagnostics if d.severity != "info"]
 
 
@@ -62,7 +62,7 @@ def test_topics_have_their_names_in_ros_and_commands_their_types(bridged):
 """,
         cart(),
     )
-    assert told(world) == []
+    assert reported(world) == []
     assert topics(world) == {
         "/clock": "rosgraph_msgs/msg/Clock",
         "/drive": "geometry_msgs/msg/TwistStamped",
@@ -83,7 +83,7 @@ def test_what_stands_beside_an_image_goes_with_it(bridged):
         "ros_type_name: sensor_msgs/msg/Image}",
         CAMERA,
     )
-    assert told(world) == []
+    assert reported(world) == []
     assert set(topics(world)) >= {"/front/rgb", "/front/rgb/compressed", "/front_eye/camera_info"}
 
 

@@ -93,10 +93,10 @@ def test_it_is_published_at_each_step(glider):
     made = glider()
     box = made.world.mailbox("/buoyancy_engine/current_volume", size=10_000)
     made.world.run(1.0)
-    told = box.drain()
-    assert len(told) == pytest.approx(200, abs=1)
+    reported = box.drain()
+    assert len(reported) == pytest.approx(200, abs=1)
     # Without a command, the smallest volume.
-    assert told[-1].data == pytest.approx(3e-5)
+    assert reported[-1].data == pytest.approx(3e-5)
 
 
 def test_above_the_surface_the_bladder_is_empty_weight(glider):

@@ -37,17 +37,17 @@ def test_gz_diff_drive_closes_a_circle(make, cart, read, prefix):
     world = spawn(make, cart(TWO, gz_diff(prefix=prefix), balls=GLIDERS))
     world.publish("/model/cart/cmd_vel", linear_x=forward, angular_z=turn)
     world.run(1.0)
-    told = read(world, "/model/cart/odometry", 2 * math.pi / turn)
-    assert circle(path(told)) == pytest.approx(forward / turn, rel=0.02)
-    assert told[0].header.frame_id == "cart/odom"
-    assert told[0].child_frame_id == "cart/base_link"
-    assert len(told) == pytest.approx(50 * 2 * math.pi / turn, abs=1)
-    start, end = path(told)[0], path(told)[-1]
+    reported = read(world, "/model/cart/odometry", 2 * math.pi / turn)
+    assert circle(path(reported)) == pytest.approx(forward / turn, rel=0.02)
+    assert reported[0].header.frame_id == "cart/odom"
+    assert reported[0].child_frame_id == "cart/base_link"
+    assert len(reported) == pytest.approx(50 * 2 * math.pi / turn, abs=1)
+    start, end = path(reported)[0], path(reported)[-1]
     assert np.linalg.norm(end - start) < 0.05
     # The odometry is the wheels' turning; the robot itself lags by what its tyres creep.
     place = world.model("cart").pose
     assert math.hypot(place.x - end[0], place.y - end[1]) < 0.05
-    twist = told[-1].twist.twist
+    twist = reported[-1].twist.twist
     assert (twist.linear.x, twist.angular.z) == pytest.approx((forward, turn), rel=0.01)
 
 
@@ -72,9 +72,9 @@ def test_gz_limits_are_kept(make, cart, read):
       <max_linear_acceleration>0.5</max_linear_acceleration><max_jerk>1</max_jerk>"""
     world = spawn(make, cart(TWO, gz_diff(tags), balls=GLIDERS))
     world.publish("/model/cart/cmd_vel", linear_x=5.0)
-    told = read(world, "/model/cart/odometry", 2.0)
-    speeds = np.array([message.twist.twist.linear.x for message in told])
-    times = np.array([m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in told]) - 0.5
+    reported = read(world, "/model/cart/odometry", 2.0)
+    speeds = np.array([message.twist.twist.linear.x for message in reported])
+    times = np.array([m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in reported]) - 0.5
     on_the_way = (times > 0.1) & (times < 0.55)
     assert speeds[on_the_way] == pytest.approx(0.5 * times[on_the_way], abs=0.02)
     assert speeds[times > 0.7] == pytest.approx(0.3, abs=0.01)
@@ -139,9 +139,9 @@ def test_a_reset_takes_drives_back(make, cart):
     box.drain()
     world.run(1.0)
     assert abs(world.model("cart").pose.x) < 1e-3
-    told = box.drain()[-1]
-    assert where(told)[:2] == pytest.approx((0, 0), abs=1e-3)
-    assert told.twist.twist.linear.x == pytest.approx(0, abs=1e-3)
+    reported = box.drain()[-1]
+    assert where(reported)[:2] == pytest.approx((0, 0), abs=1e-3)
+    assert reported.twist.twist.linear.x == pytest.approx(0, abs=1e-3)
 
 
 def test_the_velocity_limits_of_the_wheels_apply(make):

@@ -57,7 +57,7 @@ CRITICAL = POSITION.format(p=100 * INERTIA, d=20 * INERTIA)
 
 def test_each_point_is_held_until_the_next_one_s_turn_and_progress_is_published(make):
     world = arm(make, CRITICAL)
-    told = world.mailbox(f"{TOPIC}_progress")
+    reported = world.mailbox(f"{TOPIC}_progress")
     points = [(1.0, [0.5], [], []), (2.0, [-0.3], [], []), (3.0, [0.2], [], [])]
     world.publish(TOPIC, trajectory(["first"], points))
     world.run(1.0)
@@ -67,7 +67,7 @@ def test_each_point_is_held_until_the_next_one_s_turn_and_progress_is_published(
     assert position(world) == pytest.approx(-0.3, abs=2e-3)
     world.run(2.0)
     assert position(world) == pytest.approx(0.2, abs=1e-3)
-    assert [message.data for message in told.drain()] == pytest.approx([1 / 3, 2 / 3, 1.0])
+    assert [message.data for message in reported.drain()] == pytest.approx([1 / 3, 2 / 3, 1.0])
 
 
 def test_a_load_bends_it_by_what_its_gain_allows(make):

@@ -106,8 +106,8 @@ def test_without_a_topic_it_has_gazebos_long_name(make):
 def test_gazebo_classics_ray_without_plugin_is_silent_and_reported(make):
     world = make.world(make.sdf(lidar(kind="ray", tags="")))
     assert not any("scan" in name for name in topics(world))
-    (told,) = coded(world, devices.SENSOR_WITHOUT_PLUGIN)
-    assert told.origin.file == "test.sdf"
+    (reported,) = coded(world, devices.SENSOR_WITHOUT_PLUGIN)
+    assert reported.origin.file == "test.sdf"
 
 
 @pytest.mark.parametrize(("kind", "publishes"), [("gpu_lidar", True), ("ray", False)])
@@ -115,9 +115,9 @@ def test_a_plugin_that_is_none_takes_nothing_from_a_sensor_of_new_gazebo(make, k
     dummy = '<plugin name="dummy" filename="dummyfile"/>'
     world = make.world(make.sdf(lidar(kind=kind, tags=dummy)))
     assert any(name.endswith("/scan") for name in topics(world)) == publishes
-    (told,) = world.session.diagnostics
-    assert told.code is devices.PLUGIN_UNKNOWN
-    assert told.values["name"] == "dummyfile"
+    (reported,) = world.session.diagnostics
+    assert reported.code is devices.PLUGIN_UNKNOWN
+    assert reported.values["name"] == "dummyfile"
 
 
 def test_physics_that_a_model_names_is_there_anyway(make):

@@ -42,8 +42,10 @@ def test_a_logical_camera_sees_what_lies_in_its_view(make, read, place, seen):
     world.session.spawn(make.box("thing", (0.1, 0.1, 0.1), static=True), pose=EYE @ turned)
     message = read(world, "/seen", 0.1)[-1]
     assert [model.name for model in message.model] == (["thing"] if seen else [])
-    told = message.pose
-    assert (told.position.x, told.position.y, told.position.z) == pytest.approx(EYE.position)
+    reported = message.pose
+    assert (reported.position.x, reported.position.y, reported.position.z) == pytest.approx(
+        EYE.position
+    )
     for model in message.model:
         at, turn = model.pose.position, model.pose.orientation
         assert (at.x, at.y, at.z) == pytest.approx(place)
@@ -69,7 +71,7 @@ def test_a_logical_camera_has_gazebos_long_name(make):
     ],
 )
 def test_a_view_that_is_none_leaves_the_sensor_out(make, view):
-    (told,) = make.world(make.sdf(logical(view))).diagnostics
-    assert told.severity == "error"
-    assert told.code is running.PLUGIN_LEFT_OUT
-    assert told.values["plugin"] == "lc"
+    (reported,) = make.world(make.sdf(logical(view))).diagnostics
+    assert reported.severity == "error"
+    assert reported.code is running.PLUGIN_LEFT_OUT
+    assert reported.values["plugin"] == "lc"

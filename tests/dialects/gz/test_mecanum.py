@@ -30,7 +30,7 @@ def test_mecanum_goes_where_it_is_commanded_and_believes_its_wheels(make, cart, 
     world.publish("/model/cart/cmd_vel", linear_x=forward, linear_y=sideways, angular_z=turn)
     world.run(0.5)
     start = world.model("cart").pose
-    told = read(world, "/model/cart/odometry", 2.0)
+    reported = read(world, "/model/cart/odometry", 2.0)
     end = start.inverse() @ world.model("cart").pose
     # Along the chord of an arc of 2 s.
     chord = 2.0 * (math.sin(turn) / turn if turn else 1.0)
@@ -41,7 +41,7 @@ def test_mecanum_goes_where_it_is_commanded_and_believes_its_wheels(make, cart, 
     )
     assert (end.x, end.y) == pytest.approx(expected, abs=0.02)
     assert end.yaw == pytest.approx(2.0 * turn, abs=0.03)
-    twist = told[-1].twist.twist
+    twist = reported[-1].twist.twist
     assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(
         (forward, sideways, turn), abs=0.01
     )

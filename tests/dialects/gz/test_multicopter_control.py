@@ -221,8 +221,8 @@ def test_a_fast_loop_gets_the_step_of_gazebo(make, change, milliseconds):
     made = Copter(make, gains=FAST.format(k=change * inertia / 0.005))
     simulation = made.world.session.simulation
     assert simulation.step_ns == milliseconds * 1_000_000
-    told = coded(made.world, world.STEP_SHORTENED)
-    assert len(told) == (milliseconds == 1)
+    reported = coded(made.world, world.STEP_SHORTENED)
+    assert len(reported) == (milliseconds == 1)
     made.fly(0.1)
     simulation.delete("bee")
     assert simulation.step_ns == 5_000_000

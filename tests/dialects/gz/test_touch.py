@@ -69,5 +69,5 @@ def test_a_lift_ends_the_contact(world, make):
 
 def test_a_model_without_contact_sensors_is_reported(world, make):
     spawned(world, ball(make, sensor=""))
-    (told,) = coded(world, devices.PLUGIN_IDLE)
-    assert told.origin.line == 4
+    (reported,) = coded(world, devices.PLUGIN_IDLE)
+    assert reported.origin.line == 4

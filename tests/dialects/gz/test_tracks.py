@@ -173,14 +173,14 @@ def test_odometry_and_transform_are_published(make):
     )
     made.send(0.4, 0.2)
     made.world.run(1.0)
-    told = box.drain()
-    assert len(told) == len(frames.drain()) == pytest.approx(50, abs=1)
-    twist = told[-1].twist.twist
+    reported = box.drain()
+    assert len(reported) == len(frames.drain()) == pytest.approx(50, abs=1)
+    twist = reported[-1].twist.twist
     assert twist.linear.x == pytest.approx(0.4)
     # As in gz-sim: the rate of wheels that move like the tracks.
     assert twist.angular.z == pytest.approx(0.4)
-    assert told[-1].header.frame_id == "crawler/odom"
-    assert told[-1].child_frame_id == "crawler/base"
+    assert reported[-1].header.frame_id == "crawler/odom"
+    assert reported[-1].child_frame_id == "crawler/base"
 
 
 def test_a_track_publishes_its_distance(make):
@@ -188,10 +188,10 @@ def test_a_track_publishes_its_distance(make):
     box = made.world.mailbox("/model/crawler/link/left/odometry", size=1000)
     made.send(0.4)
     made.world.run(1.0)
-    told = box.drain()
-    assert len(told) == 20
-    assert told[-1].twist.twist.linear.x == pytest.approx(0.4)
-    assert told[-1].pose.pose.position.x == pytest.approx(0.4, abs=0.03)
+    reported = box.drain()
+    assert len(reported) == 20
+    assert reported[-1].twist.twist.linear.x == pytest.approx(0.4)
+    assert reported[-1].pose.pose.position.x == pytest.approx(0.4, abs=0.03)
 
 
 def test_limits_bind(make):
@@ -314,8 +314,8 @@ def test_old_names_are_understood(make):
 
 def test_a_track_without_a_controller_is_reported(make):
     made = Crawler(make, tracks=1)
-    (told,) = coded(made.world, devices.PLUGIN_IDLE)
-    assert told.values["link"] == "right"
+    (reported,) = coded(made.world, devices.PLUGIN_IDLE)
+    assert reported.values["link"] == "right"
 
 
 @pytest.mark.parametrize(

@@ -122,8 +122,8 @@ def test_what_does_not_fit_is_reported(old, new, code):
     plugin = KEYS.replace(old, new)
     assert plugin != KEYS
     with World(f'<sdf version="1.9"><world name="w">{plugin}</world></sdf>') as world:
-        (told,) = coded(world, running.PLUGIN_LEFT_OUT)
-    assert told.values["cause"] == code.number
+        (reported,) = coded(world, running.PLUGIN_LEFT_OUT)
+    assert reported.values["cause"] == code.number
 
 
 @pytest.mark.parametrize(

@@ -454,6 +454,6 @@ def test_a_plugin_of_the_link_includes_the_added_mass_of_the_inertial(water):
 
 def test_a_negative_added_mass_is_reported(water):
     world, _ = water("", mass=2.0, size="", at=weighted("<xx>1</xx><xy>3</xy><yy>1</yy>"))
-    (told,) = coded(world, tags.NOT_SIMULATED)
-    assert told.values["tag"] == "fluid_added_mass"
+    (reported,) = coded(world, tags.NOT_SIMULATED)
+    assert reported.values["tag"] == "fluid_added_mass"
     assert acceleration(world) == pytest.approx(-GRAVITY, rel=1e-3)

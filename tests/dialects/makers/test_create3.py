@@ -11,7 +11,7 @@ RATE = 62.0
 OMNI, FRONT = 0, 1
 
 
-def plugin(name, tags="", out="told"):
+def plugin(name, tags="", out="reported"):
     return f"""<plugin name="one" filename="libgazebo_ros_create_{name}.so">
       <ros><remapping>~/out:={out}</remapping></ros>{tags}</plugin>"""
 
@@ -59,14 +59,14 @@ def test_the_zone_of_the_bumper_that_meets_something_is_published(make, degrees,
     bumper = f"""<sensor name="bumper" type="contact"><update_rate>{RATE}</update_rate>
       <contact><collision>shell</collision></contact>{plugin("bumper")}</sensor>"""
     world = make.world(post, slider(make, sensor=bumper), ground=0.0)
-    box = world.mailbox("/told")
+    box = world.mailbox("/reported")
     world.run(0.5)
     assert not box.drain()
     world.publish("/cmd_vel", linear_x=0.2 * math.cos(angle), linear_y=0.2 * math.sin(angle))
     world.run(1.5)
-    told = box.drain()
-    assert {message.header.frame_id for message in told} == {zone}
-    assert {message.type for message in told} == {told[0].BUMP}
+    reported = box.drain()
+    assert {message.header.frame_id for message in reported} == {zone}
+    assert {message.type for message in reported} == {reported[0].BUMP}
 
 
 def test_what_is_behind_presses_no_zone(make):
@@ -74,7 +74,7 @@ def test_what_is_behind_presses_no_zone(make):
     bumper = f"""<sensor name="bumper" type="contact"><contact><collision>shell</collision>
       </contact>{plugin("bumper")}</sensor>"""
     world = make.world(wall, slider(make, sensor=bumper), ground=0.0)
-    box = world.mailbox("/told")
+    box = world.mailbox("/reported")
     world.publish("/cmd_vel", linear_x=-0.2)
     world.run(1.5)
     assert not box.drain()
@@ -85,11 +85,13 @@ def test_a_floor_that_is_far_down_is_a_cliff(make, height, cliff):
     tags = "<detection_threshold>0.08</detection_threshold><frame_id>cliff_front</frame_id>"
     down = f"<pose>0 0 {height} 0 {math.pi / 2} 0</pose>"
     world = make.world(make.sdf(ray("cliff_sensor", tags, frame=down)), ground=1.0)
-    box = world.mailbox("/told", size=1000)
+    box = world.mailbox("/reported", size=1000)
     world.run(1.0)
-    told = box.drain()
-    assert bool(told) == cliff
-    assert all((each.type, each.header.frame_id) == (each.CLIFF, "cliff_front") for each in told)
+    reported = box.drain()
+    assert bool(reported) == cliff
+    assert all(
+        (each.type, each.header.frame_id) == (each.CLIFF, "cliff_front") for each in reported
+    )
 
 
 @pytest.mark.parametrize("distance", [0.02, 0.1, None])
@@ -101,7 +103,7 @@ def test_infrared_light_fades_with_the_distance(make, distance):
         wall = make.box("wall", (1, 1, 1), static=True, pose=Pose((distance + 0.5, 0, 0)))
         things.append(wall)
     world = make.world(*things)
-    box = world.mailbox("/told")
+    box = world.mailbox("/reported")
     world.run(0.1)
     message = box.drain()[-1]
     away = reach if distance is None else distance
@@ -115,14 +117,14 @@ def test_its_acceleration_is_without_gravity(make):
     still = make.sdf(f"""<model name="still"><static>1</static><pose>0 0 1 0.3 0.2 0.1</pose>
       <link name="imu_link">{imu}</link></model>""")
     world = make.world(still)
-    box = world.mailbox("/told")
+    box = world.mailbox("/reported")
     world.run(0.1)
     rest = box.drain()[-1].linear_acceleration
     assert (rest.x, rest.y, rest.z) == pytest.approx((0, 0, 0), abs=1e-9)
     falling = make.sdf(f"""<model name="falling"><pose>0 0 9 {math.pi / 2} 0 0</pose>
       <link name="imu_link"><inertial><mass>1</mass></inertial>{imu}</link></model>""")
     world = make.world(falling)
-    box = world.mailbox("/told")
+    box = world.mailbox("/reported")
     world.run(0.2)
     fall = box.drain()[-1].linear_acceleration
     # Lying on its side: what is down is -y there.
@@ -136,7 +138,7 @@ def test_the_mouse_adds_up_the_way_along_its_own_axes(make):
     tags = "<link_name>mouse</link_name><update_rate>50</update_rate>"
     robot = slider(make, plugin("optical_mouse", tags), mouse=link)
     world = make.world(robot, ground=0.0)
-    box = world.mailbox("/told", size=1000)
+    box = world.mailbox("/reported", size=1000)
     world.run(0.5)
     first, start = box.drain()[-1], world.model("robot").pose
     world.publish("/cmd_vel", linear_x=0.2)
@@ -164,9 +166,9 @@ def test_a_wheel_is_dropped_from_the_upper_bound_until_below_the_lower(make):
       {plugin("wheel_drop", tags)}<plugin name="push" filename="libgazebo_ros_force.so">
       <bodyName>wheel</bodyName><topicName>push</topicName></plugin></model>""")
     world = make.world(wheel)
-    box = world.mailbox("/told", size=1000)
+    box = world.mailbox("/reported", size=1000)
 
-    def told_at(part):
+    def reported_at(part):
         """What is published once the wheel hangs out by so much of the threshold."""
         world.publish("/push", force_z=mass * 9.8 - part * threshold * stiffness)
         world.run(2.0)
@@ -174,13 +176,13 @@ def test_a_wheel_is_dropped_from_the_upper_bound_until_below_the_lower(make):
         world.run(0.2)
         return box.drain()
 
-    told = told_at(0.98)
-    assert {(each.type, each.header.frame_id) for each in told} == {
-        (told[0].WHEEL_DROP, "wheel_drop_left")
+    reported = reported_at(0.98)
+    assert {(each.type, each.header.frame_id) for each in reported} == {
+        (reported[0].WHEEL_DROP, "wheel_drop_left")
     }
-    assert told_at(0.8)
-    assert not told_at(0.72)
-    assert not told_at(0.8)
+    assert reported_at(0.8)
+    assert not reported_at(0.72)
+    assert not reported_at(0.8)
 
 
 DOCK = """<model name="dock"><static>1</static><link name="halo"/></model>"""
@@ -227,9 +229,9 @@ def test_the_codes_are_those_of_the_lights_that_reach_a_receiver(
     world = watcher(make, *place, angle + math.pi + math.radians(facing))
     box = world.mailbox("/ir_opcode", size=1000)
     world.run(0.1)
-    told = box.drain()
-    assert {(each.sensor, each.opcode) for each in told} == codes
-    assert all(each.header.frame_id == "eye" for each in told)
+    reported = box.drain()
+    assert {(each.sensor, each.opcode) for each in reported} == codes
+    assert all(each.header.frame_id == "eye" for each in reported)
 
 
 @pytest.mark.parametrize(

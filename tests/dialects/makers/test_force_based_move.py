@@ -34,9 +34,9 @@ def test_it_nears_its_velocity_with_the_time_constant_of_mass_and_gain(make, rea
     world = spawn(make, "<x_velocity_p_gain>100</x_velocity_p_gain>"
                         "<y_velocity_p_gain>100</y_velocity_p_gain>")  # fmt: skip
     world.publish("/cmd_vel", linear_x=0.6, linear_y=-0.3)
-    told = read(world, "/odom", 0.4)
-    assert told
-    for message in told:
+    reported = read(world, "/odom", 0.4)
+    assert reported
+    for message in reported:
         time = message.header.stamp.nanosec * 1e-9
         share = 1 - math.exp(-100 / MASS * time)
         assert message.twist.twist.linear.x == pytest.approx(0.6 * share, abs=4e-3)
@@ -61,8 +61,8 @@ def test_friction_costs_it_what_the_gain_says(make, read):
                         f"<y_velocity_p_gain>{gain}</y_velocity_p_gain>",
                   ground=1.0, gravity=G, pose=Pose((0, 0, 0.1)))  # fmt: skip
     world.publish("/cmd_vel", linear_x=0.6)
-    told = read(world, "/odom", 2.0)[-1].twist.twist.linear.x
-    assert told == pytest.approx(0.6 - 0.2 * MASS * G / gain, rel=0.03)
+    reported = read(world, "/odom", 2.0)[-1].twist.twist.linear.x
+    assert reported == pytest.approx(0.6 - 0.2 * MASS * G / gain, rel=0.03)
 
 
 def test_its_odometry_begins_where_it_does_and_counts_sideways(make, read):

@@ -17,26 +17,26 @@ def drone(make, tags=""):
 def test_it_publishes_its_height_and_the_pressure_at_its_altitude(make, read):
     world = make.world(drone(make, "<elevation>400</elevation><qnh>1000</qnh>"))
     heights = world.mailbox("/pressure_height")
-    told = read(world, "/altimeter", 1.0)
-    assert len(told) == 11
+    reported = read(world, "/altimeter", 1.0)
+    assert len(reported) == 11
     assert [message.point.z for message in heights.drain()] == [120.0] * 11
-    assert told[-1].altitude == 520
-    assert told[-1].qnh == 1000
-    assert told[-1].pressure == pytest.approx(1000 * (1 - 520 / 44330) ** 5.263157)
-    assert told[-1].header.frame_id == "link"
+    assert reported[-1].altitude == 520
+    assert reported[-1].qnh == 1000
+    assert reported[-1].pressure == pytest.approx(1000 * (1 - 520 / 44330) ** 5.263157)
+    assert reported[-1].header.frame_id == "link"
     # The standard atmosphere has a little less at 520 m, 939.7 hPa where the sea has 1000.
-    assert told[-1].pressure == pytest.approx(939.7, abs=0.3)
+    assert reported[-1].pressure == pytest.approx(939.7, abs=0.3)
 
 
 def test_its_errors_are_of_the_height(make, read):
     tags = "<offset>2</offset><gaussianNoise>0.5</gaussianNoise><scaleError>1.1</scaleError>"
     world = make.world(drone(make, tags + "<frameId>air</frameId>"))
-    told = read(world, "/pressure_height", 60.0)
-    heights = np.array([message.point.z for message in told])
+    reported = read(world, "/pressure_height", 60.0)
+    heights = np.array([message.point.z for message in reported])
     # The mean of n is known to sigma / sqrt(n), four of which it stays within.
-    assert heights.mean() == pytest.approx(120 * 1.1 + 2, abs=4 * 0.5 / np.sqrt(len(told)))
+    assert heights.mean() == pytest.approx(120 * 1.1 + 2, abs=4 * 0.5 / np.sqrt(len(reported)))
     assert heights.std() == pytest.approx(0.5, rel=0.15)
-    assert told[0].header.frame_id == "air"
+    assert reported[0].header.frame_id == "air"
 
 
 def test_an_empty_topic_is_none(make):

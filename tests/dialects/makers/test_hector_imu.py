@@ -29,8 +29,8 @@ def test_hector_imu_reads_truth_when_it_has_no_errors(make, read):
     message = read(world, "/imu", 0.1)[0]
     assert vector(message.linear_acceleration) == pytest.approx([0, 0, 0], abs=1e-6)
     assert vector(message.angular_velocity) == pytest.approx([0, 0, 0.5], abs=1e-6)
-    told = message.orientation
-    assert (told.x, told.y, told.z, told.w) == pytest.approx(turned, abs=1e-9)
+    reported = message.orientation
+    assert (reported.x, reported.y, reported.z, reported.w) == pytest.approx(turned, abs=1e-9)
 
 
 def test_hector_imus_noise_and_scale_are_as_stated(make, read):
@@ -99,17 +99,19 @@ def test_calibration_takes_the_rates_drift_away_and_a_bias_can_be_set(make, read
 
 def test_a_yaw_error_turns_the_orientation_about_the_vertical(make, read):
     world = floating(make, hector("<yawOffset>0.3</yawOffset>"), Pose((0, 0, 0)))
-    told = read(world, "/imu", 0.05)[0].orientation
-    assert (told.x, told.y, told.z, told.w) == pytest.approx(quat_from_rpy(0, 0, 0.3), abs=1e-9)
+    reported = read(world, "/imu", 0.05)[0].orientation
+    assert (reported.x, reported.y, reported.z, reported.w) == pytest.approx(
+        quat_from_rpy(0, 0, 0.3), abs=1e-9
+    )
 
 
 def test_an_accelerometers_offset_tilts_what_it_takes_for_up(make, read):
     """Off by b along x it takes a direction b/g off for up: the pitch is wrong by b/g."""
     world = make.world(ground=None)
     world.session.spawn(make.sdf(hector("<accelOffset>0.098 0 0</accelOffset>")))
-    told = read(world, "/imu", 0.05)[0].orientation
-    assert abs(2 * told.y) == pytest.approx(0.098 / G, rel=1e-3)
-    assert abs(told.x) < 1e-9
+    reported = read(world, "/imu", 0.05)[0].orientation
+    assert abs(2 * reported.y) == pytest.approx(0.098 / G, rel=1e-3)
+    assert abs(reported.x) < 1e-9
 
 
 @pytest.mark.parametrize(

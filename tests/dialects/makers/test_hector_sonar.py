@@ -24,8 +24,8 @@ def test_a_drift_wanders_slowly_with_the_spread_that_is_asked_for(make):
     spread, constant, rate = 0.05, 0.5, 100
     tags = f"<drift>{spread}</drift><driftFrequency>{1 / constant}</driftFrequency>"
     world = make.world(wall(make, 2.0), make.sdf(finder(tags, filename=SONAR, rate=rate)))
-    told = messages(world, "/sonar", seconds=200.0)
-    errors = np.array([message.range for message in told]) - 2.0
+    reported = messages(world, "/sonar", seconds=200.0)
+    errors = np.array([message.range for message in reported]) - 2.0
     # As good as 200 s / 2 T independent values, and five standard errors.
     free = 200.0 / (2 * constant)
     assert errors.std() == pytest.approx(spread, rel=5 / math.sqrt(2 * free))

@@ -93,15 +93,15 @@ def heading(pose):
 def test_it_drives_and_its_odometry_knows_where_it_is(world, read):
     start = world.model("kobuki").pose
     drive(world, 4.0, 0.2, 0.4)
-    told = read(world, "/odom", 0.1)[-1]
+    reported = read(world, "/odom", 0.1)[-1]
     pose = world.model("kobuki").pose
     assert pose.yaw - start.yaw == pytest.approx(4.1 * 0.4, rel=0.05)
-    where = told.pose.pose.position
+    where = reported.pose.pose.position
     assert (where.x, where.y) == pytest.approx(pose.position[:2], abs=0.02)
     # The turning is the gyroscope's: exact, whatever the wheels slip, and up to 20 ms old.
-    assert heading(told.pose.pose) == pytest.approx(pose.yaw - 0.4 * 0.01, abs=0.4 * 0.015)
-    assert told.child_frame_id == "base_footprint"
-    assert told.pose.covariance[[0, 7, 14, 35]].tolist() == [0.1, 0.1, 1e6, 0.05]
+    assert heading(reported.pose.pose) == pytest.approx(pose.yaw - 0.4 * 0.01, abs=0.4 * 0.015)
+    assert reported.child_frame_id == "base_footprint"
+    assert reported.pose.covariance[[0, 7, 14, 35]].tolist() == [0.1, 0.1, 1e6, 0.05]
 
 
 def test_without_a_command_it_stands_after_its_timeout(world, read):
@@ -126,26 +126,26 @@ def test_the_odometry_starts_again_where_it_is_set(world, read):
     world.publish(f"{BASE}/commands/reset_odometry")
     world.run(1.0)
     # The last command holds for 0.1 s more.
-    told = read(world, "/odom", 0.1)[-1]
-    assert told.pose.pose.position.x == pytest.approx(0.2 * 0.1, abs=5e-3)
+    reported = read(world, "/odom", 0.1)[-1]
+    assert reported.pose.pose.position.x == pytest.approx(0.2 * 0.1, abs=5e-3)
 
 
 def test_joint_states_have_names_velocities_and_a_frame(world, read):
     drive(world, 1.0, 0.2)
-    told = read(world, "/joint_states", 0.1)[-1]
-    assert told.name == ["left_joint", "right_joint"]
-    assert told.velocity == pytest.approx([0.2 / RADIUS] * 2, rel=0.03)
-    assert told.header.frame_id == "base_link"
+    reported = read(world, "/joint_states", 0.1)[-1]
+    assert reported.name == ["left_joint", "right_joint"]
+    assert reported.velocity == pytest.approx([0.2 / RADIUS] * 2, rel=0.03)
+    assert reported.header.frame_id == "base_link"
 
 
 def test_the_gyroscope_is_published_with_its_covariances(world, read):
     world.run(1.0)
-    told = read(world, f"{BASE}/sensors/imu_data", 0.1)[-1]
-    assert told.linear_acceleration.z == pytest.approx(9.8, abs=0.2)
+    reported = read(world, f"{BASE}/sensors/imu_data", 0.1)[-1]
+    assert reported.linear_acceleration.z == pytest.approx(9.8, abs=0.2)
     drive(world, 1.0, 0.0, 0.5)
-    told = read(world, f"{BASE}/sensors/imu_data", 0.08)[-1]
-    assert told.angular_velocity.z == pytest.approx(0.5, rel=0.05)
-    assert told.angular_velocity_covariance[8] == 0.05
+    reported = read(world, f"{BASE}/sensors/imu_data", 0.08)[-1]
+    assert reported.angular_velocity.z == pytest.approx(0.5, rel=0.05)
+    assert reported.angular_velocity_covariance[8] == 0.05
 
 
 @pytest.mark.parametrize(

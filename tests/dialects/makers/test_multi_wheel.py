@@ -22,8 +22,8 @@ def test_multi_wheel_drives_sides_of_unlike_count(make, cart, read):
     world = spawn(make, cart(wheels, plugin))
     world.publish("/cmd_vel", linear_x=0.5)
     world.run(1.0)
-    told = read(world, "/odom", 2.0)
-    x, y, _ = np.array(where(told[-1])) - np.array(where(told[0]))
+    reported = read(world, "/odom", 2.0)
+    x, y, _ = np.array(where(reported[-1])) - np.array(where(reported[0]))
     assert math.hypot(x, y) == pytest.approx(0.5 * 1.99, rel=0.01)
     speeds = [world.session.simulation.data.joint(f"cart::{name}_joint").qvel[0] for name in wheels]
     assert speeds == pytest.approx([0.5 / RADIUS] * 5, rel=0.01)

@@ -42,8 +42,8 @@ def test_it_does_not_move_sideways_if_that_is_switched_off(make, read):
 def test_gains_that_differ_are_reported(make, read):
     tags = "<useForceFeedback>1</useForceFeedback><forceGainY>5</forceGainY>"
     world, _ = moved(make, read, tags, linear_x=0.1)
-    (told,) = coded(world, devices.PLUGIN_PARAMETER_IGNORED)
-    assert told.values["parameter"] == "forceGainY"
+    (reported,) = coded(world, devices.PLUGIN_PARAMETER_IGNORED)
+    assert reported.values["parameter"] == "forceGainY"
 
 
 LOW = """<model name="base"><link name="base_link"><inertial><mass>20</mass><inertia><ixx>0.1</ixx>

@@ -73,12 +73,12 @@ def test_all_four_see_under_the_plugins_name(make):
 
 
 def test_depths_are_whole_millimetres_within_their_range(make):
-    for distance, told in ((2.0, 2000), (0.2, 0), (3.5, 0)):
+    for distance, reported in ((2.0, 2000), (0.2, 0), (3.5, 0)):
         world = make.world(device(make), wall(make, distance), ground=None)
         message = take(world, "/camera/depth/image_raw")
         assert (message.encoding, message.header.frame_id) == ("16UC1", "depth_optical")
         depths = np.asarray(message.data).view("<u2")
-        assert np.abs(depths.astype(int) - told).max() <= 1
+        assert np.abs(depths.astype(int) - reported).max() <= 1
         world.close()
 
 

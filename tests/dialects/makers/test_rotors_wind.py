@@ -54,5 +54,5 @@ def test_an_offset_turns_the_link(flying):
 
 def test_wind_fields_are_not_supported(flying):
     world = flying("<useCustomStaticWindField>true</useCustomStaticWindField>")
-    (told,) = coded(world, devices.PLUGIN_PARAMETER_IGNORED)
-    assert told.values["parameter"] == "useCustomStaticWindField"
+    (reported,) = coded(world, devices.PLUGIN_PARAMETER_IGNORED)
+    assert reported.values["parameter"] == "useCustomStaticWindField"

@@ -30,17 +30,17 @@ def foot(make):
 
 def test_a_foot_publishes_the_weight_on_it_in_its_own_axes(make, read):
     world = make.world(foot(make), ground=0.0)
-    told = read(world, "/visual/FR_foot_contact/the_force", 0.01)[-1]
-    assert told.wrench.force.z == 0
+    reported = read(world, "/visual/FR_foot_contact/the_force", 0.01)[-1]
+    assert reported.wrench.force.z == 0
     world.run(3.0)
-    told = read(world, "/visual/FR_foot_contact/the_force", 1.0)
-    assert len(told) == 100
-    force = told[-1].wrench.force
+    reported = read(world, "/visual/FR_foot_contact/the_force", 1.0)
+    assert len(reported) == 100
+    force = reported[-1].wrench.force
     # Up in the world, seen from a link that leans forward about y.
     assert np.array([force.x, force.y, force.z]) == pytest.approx(
         [-MASS * G * math.sin(TILT), 0, MASS * G * math.cos(TILT)], abs=0.05
     )
-    assert told[-1].header.frame_id == "calf"
+    assert reported[-1].header.frame_id == "calf"
 
 
 ROVER = """<model name="rover"><link name="base"><inertial><mass>1</mass></inertial></link>

@@ -75,10 +75,10 @@ def test_a_velodyne_leaves_out_what_its_tags_leave_out(make, tags, kept):
 
 def test_a_velodynes_noise_is_along_the_rays(make):
     tags = POINTS + "<gaussianNoise>0.03</gaussianNoise>"
-    told = messages(world_of(make, VELODYNE, tags), "/points_raw", 6.0)
+    reported = messages(world_of(make, VELODYNE, tags), "/points_raw", 6.0)
     expected = on_the_wall().transpose(1, 0, 2).reshape(-1, 3)
     length = np.linalg.norm(expected, axis=1)
-    points = np.array([places(fields(message))[0] for message in told])
+    points = np.array([places(fields(message))[0] for message in reported])
     error = np.linalg.norm(points, axis=2) - length
     assert error.std() == pytest.approx(0.03, rel=5 / math.sqrt(2 * error.size))
     # Each point stays on its ray.

@@ -77,13 +77,13 @@ def give(made, name, kind, value):
 def test_what_the_files_name_is_listed_with_its_interfaces(arm):
     found = listed(arm)
     assert states(arm) == {"states": "active", "group": "active"}
-    group, told = found["group"], found["states"]
+    group, reported = found["group"], found["states"]
     assert group.type == GROUP["type"]
     assert group.update_rate == 100
     assert group.claimed_interfaces == group.required_command_interfaces == ["beam_joint/position"]
     assert group.required_state_interfaces == ["beam_joint/position", "beam_joint/velocity"]
-    assert told.claimed_interfaces == []
-    assert told.required_state_interfaces == ["beam_joint/position", "beam_joint/velocity"]
+    assert reported.claimed_interfaces == []
+    assert reported.required_state_interfaces == ["beam_joint/position", "beam_joint/velocity"]
 
 
 def test_a_spawner_finds_what_runs_and_configures_and_activates_it(arm):
@@ -257,8 +257,8 @@ def test_nodes_have_what_files_state_as_parameters(arm):
     rate, kind, nothing = parameters(arm, MANAGER, "GetParameters", names=names).values
     assert (rate.integer_value, kind.string_value, nothing.type) == (100, GROUP["type"], 0)
     assert arm.world.graph.nodes["arm/group"] == "/group"
-    told = parameters(arm, "/group", "ListParameters").result.names
-    assert told == ["joints", "type", "use_sim_time"]
+    reported = parameters(arm, "/group", "ListParameters").result.names
+    assert reported == ["joints", "type", "use_sim_time"]
     (joints,) = parameters(arm, "/group", "GetParameters", names=["joints"]).values
     assert joints.string_array_value == GROUP["joints"]
     (described,) = parameters(arm, "/group", "DescribeParameters", names=["joints"]).descriptors

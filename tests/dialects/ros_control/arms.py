@@ -32,8 +32,8 @@ ROS1 = """<plugin name="control" filename="libgazebo_ros_control.so">
 
 def ros2_joint(name, *commands, extra=""):
     """For ros2_control."""
-    told = "".join(f'<command_interface name="{each}"/>' for each in commands or ("position",))
-    return f"""<joint name="{name}">{told}<state_interface name="position"/>
+    reported = "".join(f'<command_interface name="{each}"/>' for each in commands or ("position",))
+    return f"""<joint name="{name}">{reported}<state_interface name="position"/>
       <state_interface name="velocity"/>{extra}</joint>"""
 
 

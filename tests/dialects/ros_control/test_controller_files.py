@@ -84,9 +84,9 @@ def test_a_file_that_is_missing_costs_what_it_would_start(tmp_path):
     urdf.write_text(robot(body, ros2_plugin(tmp_path / "gone.yaml", file)))
     with cw.World("empty") as world:
         world.spawn(urdf)
-        (told,) = (each for each in world.diagnostics if each.severity == "error")
-        assert told.code is devices.CONTROLLERS_FILE_UNREADABLE
-        assert told.values["file"].endswith("gone.yaml")
+        (reported,) = (each for each in world.diagnostics if each.severity == "error")
+        assert reported.code is devices.CONTROLLERS_FILE_UNREADABLE
+        assert reported.values["file"].endswith("gone.yaml")
         assert started(world) == ["group"]
 
 
@@ -104,8 +104,8 @@ def test_a_file_of_another_computer_is_the_one_in_the_package(tmp_path):
     urdf.write_text(robot(body, ros2_plugin(stated)))
     with cw.World("empty") as world:
         world.spawn(urdf)
-        (told,) = (each for each in world.diagnostics if each.code is files.FILE_ELSEWHERE)
-        assert told.values["name"] == stated
+        (reported,) = (each for each in world.diagnostics if each.code is files.FILE_ELSEWHERE)
+        assert reported.values["name"] == stated
         assert started(world) == ["group"]
 
 
@@ -174,9 +174,9 @@ robot1:
 def test_a_manager_of_another_namespace_is_reported(spawn):
     world = spawn(f"/robot1/controller_manager: {{ros__parameters: {{group: {{type: {GROUP}}}}}}}")
     assert started(world) == []
-    (told,) = warnings(world)
-    assert told.code is devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS
-    assert told.values["nodes"] == ("/robot1/controller_manager",)
+    (reported,) = warnings(world)
+    assert reported.code is devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS
+    assert reported.values["nodes"] == ("/robot1/controller_manager",)
 
 
 def test_several_files_make_one_whole_and_later_ones_win(spawn):

@@ -76,9 +76,9 @@ def test_a_file_without_a_type_says_that_it_starts_nothing(bench, tmp_path):
     file.write_text(yaml.safe_dump({"lead": {"ros__parameters": {"joints": ["a_joint"]}}}))
     tags = system(ros2_joint("a_joint"))
     made = bench(robot(beam("a", "world") + tags, ros2_plugin(file)))
-    (told,) = made.warnings
-    assert told.code is devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS
-    assert told.origin.file == str(file)
+    (reported,) = made.warnings
+    assert reported.code is devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS
+    assert reported.origin.file == str(file)
 
 
 def test_a_joint_follows_another_as_its_parameters_say(bench, tmp_path):

@@ -94,13 +94,13 @@ def test_without_the_linkage_the_second_joint_turns_twice_as_far(make, tmp_path)
 
 def test_the_robot_turns_about_as_slowly_as_is_reported(make, tmp_path):
     bot = SteerBot(make, tmp_path, HARDWARE)
-    (told,) = coded(bot.world, robot.SKID_STEERING)
+    (reported,) = coded(bot.world, robot.SKID_STEERING)
     bot.drive(1.0, 1.0, ANGLE)
     before = bot.model.pose.yaw
     bot.drive(1.0, 1.0, ANGLE)
     turned = (bot.model.pose.yaw - before) / (math.tan(ANGLE) / BASE)
     estimate = BASE**2 / (BASE**2 + TRACK**2)
-    assert told.values["estimate"] == pytest.approx(estimate)
+    assert reported.values["estimate"] == pytest.approx(estimate)
     # Coulomb's friction is not proportional to the slip.
     assert turned == pytest.approx(estimate, rel=0.15)
 

@@ -48,7 +48,7 @@ def test_a_sensor_of_unknown_noise_is_left_out(make):
         '<noise type="pink"/></x></angular_velocity></imu></sensor>'
     )
     world = floating(make, model)
-    (told,) = [each for each in world.diagnostics if each.severity == "error"]
-    assert told.code is running.PLUGIN_LEFT_OUT
-    assert told.values["plugin"] == "s"
-    assert told.values["cause"] == devices.PLUGIN_PARAMETER_INVALID.number
+    (reported,) = [each for each in world.diagnostics if each.severity == "error"]
+    assert reported.code is running.PLUGIN_LEFT_OUT
+    assert reported.values["plugin"] == "s"
+    assert reported.values["cause"] == devices.PLUGIN_PARAMETER_INVALID.number

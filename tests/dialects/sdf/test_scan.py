@@ -87,6 +87,6 @@ def test_angles_the_wrong_way_round_are_swept_clockwise_and_reported(make):
     # From its corner behind on the left to its corner ahead on the right.
     assert angles.max() == pytest.approx(math.atan2(0.9, 1.4), abs=0.0101)
     assert angles.min() == pytest.approx(math.atan2(0.7, 1.6), abs=0.0101)
-    (told,) = coded(world, devices.SCAN_REVERSED)
-    assert told.severity == "info"
-    assert told.values == {"first": 0.7, "last": -0.3}
+    (reported,) = coded(world, devices.SCAN_REVERSED)
+    assert reported.severity == "info"
+    assert reported.values == {"first": 0.7, "last": -0.3}

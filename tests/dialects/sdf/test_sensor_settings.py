@@ -35,7 +35,7 @@ def standing(make, *links, **more):
     return make.world(make.sdf(model), ground=None, magnetic_field=FIELD, **more)
 
 
-def told(world, seconds, topic="/m"):
+def reported(world, seconds, topic="/m"):
     box = world.mailbox(topic, size=100_000)
     world.run(seconds)
     box.close()
@@ -58,7 +58,7 @@ def test_a_bias_wanders_and_forgets(make):
     """A Gauss-Markov process of the stated density: its variance comes to density² time / 2."""
     density, time = 1e-3, 0.5
     error = noise(dynamic_bias_stddev=density, dynamic_bias_correlation_time=time)
-    wandered = fields(told(standing(make, magnetometer(error)), 100.0)) - FIELD
+    wandered = fields(reported(standing(make, magnetometer(error)), 100.0)) - FIELD
     assert wandered[0].tolist() == [0, 0, 0]
     deviation = density * math.sqrt(time / 2)
     settled = wandered[5 * RATE :]
@@ -73,9 +73,9 @@ def test_a_bias_wanders_and_forgets(make):
 def test_where_a_bias_is_does_not_depend_on_who_listens_since_when(make):
     error = noise(dynamic_bias_stddev=1, dynamic_bias_correlation_time=2, stddev=0.1)
     first, second = (standing(make, magnetometer(error)) for _ in range(2))
-    early = fields(told(first, 3.0))
+    early = fields(reported(first, 3.0))
     second.run(2.0)
-    late = fields(told(second, 1.0))
+    late = fields(reported(second, 1.0))
     assert len(late) == RATE
     assert np.array_equal(early[-RATE:], late)
 
@@ -83,14 +83,14 @@ def test_where_a_bias_is_does_not_depend_on_who_listens_since_when(make):
 def test_after_a_reset_a_bias_begins_anew(make):
     error = noise(dynamic_bias_stddev=1, dynamic_bias_correlation_time=2)
     world = standing(make, magnetometer(error))
-    assert abs(fields(told(world, 5.0))[-1] - FIELD).max() > 1e-3
+    assert abs(fields(reported(world, 5.0))[-1] - FIELD).max() > 1e-3
     world.reset()
-    assert fields(told(world, 0.1))[0] == pytest.approx(FIELD)
+    assert fields(reported(world, 0.1))[0] == pytest.approx(FIELD)
 
 
 def test_what_is_quantised_is_a_multiple_of_the_precision(make):
     error = noise("gaussian_quantized", stddev=2.0, precision=0.5)
-    values = fields(told(standing(make, magnetometer(error)), 2.0))
+    values = fields(reported(standing(make, magnetometer(error)), 2.0))
     assert np.array_equal(values, np.round(values / 0.5) * 0.5)
     assert len(np.unique(values)) > 5
 
@@ -132,7 +132,7 @@ def test_a_range_has_the_bias_of_its_sensor(make):
       </sensor></link>"""
     wall = make.box("wall", (1, 4, 4), static=True, pose=Pose((2.5, 0, 0)))
     model = make.sdf(f'<model name="post"><static>1</static>{ray}</model>')
-    (value,) = {message.range for message in told(make.world(wall, model), 1.0, "/range")}
+    (value,) = {message.range for message in reported(make.world(wall, model), 1.0, "/range")}
     assert abs(value - 2.03) == pytest.approx(0.1)
 
 
@@ -213,7 +213,7 @@ def oriented(make, inside):
       <imu>{inside}</imu></sensor></link></model>"""
     place = spherical(40, 10, heading=math.degrees(HEADING))
     world = make.world(make.sdf(model), ground=None, spherical_coordinates=place)
-    return told(world, 0.2, "/imu")[0], world
+    return reported(world, 0.2, "/imu")[0], world
 
 
 @pytest.mark.parametrize(

@@ -52,8 +52,8 @@ def package(request: pytest.FixtureRequest) -> str:
 
 
 def library(*roots: Path) -> tuple[TypeLibrary, list[Diagnostic]]:
-    told: list[Diagnostic] = []
-    return TypeLibrary(Folders(*roots), told.append), told
+    reported: list[Diagnostic] = []
+    return TypeLibrary(Folders(*roots), reported.append), reported
 
 
 def one(tmp_path: Path, package: str, text: str | bytes, manifest: str = ROS2) -> TypeLibrary:
@@ -63,14 +63,14 @@ def one(tmp_path: Path, package: str, text: str | bytes, manifest: str = ROS2) -
 
 def test_a_type_with_nested_types_is_found_when_it_is_named(tmp_path: Path, package: str) -> None:
     write_package(tmp_path / package, MY_MSGS)
-    types, told = library(tmp_path)
+    types, reported = library(tmp_path)
     assert types.find(f"{package}/msg/WheelLoads")
     made = from_dict(f"{package}/msg/WheelLoads", {"wheels": [{"side": 1, "load": 2.5}]})
     again = decode_cdr(encode_cdr(made), f"{package}/msg/WheelLoads")
     assert to_dict(again) == to_dict(made)
     assert message_class(f"{package}/msg/Wheel").RIGHT == 1
     assert message_class(f"{package}/msg/Wheel").UNIT == "newton"
-    assert not told
+    assert not reported
 
 
 def test_nothing_is_searched_for_cartwheels_own_types(tmp_path: Path) -> None:
@@ -303,12 +303,12 @@ def test_a_built_in_type_wins_with_a_warning(tmp_path: Path) -> None:
             "msg/Quaternion.msg": "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n",
         },
     )
-    types, told = library(tmp_path)
+    types, reported = library(tmp_path)
     types.named("geometry_msgs/msg/Quaternion")
-    assert not told
+    assert not reported
     types.named("geometry_msgs/msg/Point")
     types.named("geometry_msgs/msg/Point")
-    (warning,) = told
+    (warning,) = reported
     assert warning.code is MESSAGE_TYPE_BUILT_IN
     assert warning.origin is not None
     assert warning.origin.file == str(tmp_path / "geometry_msgs/msg/Point.msg")
@@ -324,26 +324,26 @@ def test_types_of_ros1_with_the_same_fields_are_equal_to_the_built_in_ones(tmp_p
         },
         manifest=ROS1,
     )
-    types, told = library(tmp_path)
+    types, reported = library(tmp_path)
     types.named("std_msgs/msg/Header")
     types.named("std_msgs/msg/Byte")
-    assert not told
+    assert not reported
 
 
 def test_a_package_that_cartwheel_contains_may_have_more_types(tmp_path: Path) -> None:
     write_package(tmp_path / "sensor_msgs", {"msg/TyrePressure.msg": "float64 pressure\n"})
-    types, told = library(tmp_path)
+    types, reported = library(tmp_path)
     types.named("sensor_msgs/msg/TyrePressure")
     assert zero("sensor_msgs/TyrePressure").pressure == 0
-    assert not told
+    assert not reported
 
 
 def test_the_first_package_wins_and_the_other_is_reported(tmp_path: Path, package: str) -> None:
     for root, text in (("a", "int8 x\n"), ("b", "int8 x\n# equal\n"), ("c", "int16 x\n")):
         write_package(tmp_path / root / package, {"msg/One.msg": text})
-    types, told = library(tmp_path / "a", tmp_path / "b", tmp_path / "c")
+    types, reported = library(tmp_path / "a", tmp_path / "b", tmp_path / "c")
     assert types.find(f"{package}/msg/One")
-    (warning,) = told
+    (warning,) = reported
     assert warning.code is MESSAGE_DEFINITIONS_DIFFER
     assert warning.values["other"] == str(tmp_path / "c" / package / "msg/One.msg")
 

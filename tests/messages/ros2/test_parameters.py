@@ -27,8 +27,8 @@ def test_a_value_has_the_type_that_ros_gives_it(value: Any, number: int) -> None
     encode_cdr(made)
     assert made.type == number
     if number:
-        told = getattr(made, FIELDS[number])
-        assert list(told) == value if isinstance(value, list) else told == value
+        reported = getattr(made, FIELDS[number])
+        assert list(reported) == value if isinstance(value, list) else reported == value
 
 
 @pytest.mark.parametrize(

@@ -359,5 +359,5 @@ def test_a_missing_embree_is_reported_once(make, monkeypatch):
       </horizontal></scan><range><min>0.1</min><max>9</max></range></ray>
       <plugin name="{name}" filename="libgazebo_ros_laser.so"/></sensor></link></model>"""
     world = make.world(*(make.sdf(laser.format(name=name)) for name in "ab"))
-    told = [each for each in world.diagnostics if each.code is EMBREE_MISSING]
-    assert len(told) == 1
+    reported = [each for each in world.diagnostics if each.code is EMBREE_MISSING]
+    assert len(reported) == 1

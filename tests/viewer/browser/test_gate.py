@@ -106,8 +106,8 @@ def test_on_all_addresses_the_page_wants_its_token(
     with running(tmp_path, "--host", "0.0.0.0", "--allow-origin", "http://lab") as started:
         port = started.port
         assert started.process.stdout is not None
-        told = started.process.stdout.readline()
-        assert f"open to other computers with the token: http://{socket.gethostname()}:" in told
+        reported = started.process.stdout.readline()
+        assert f"open to other computers with the token: http://{socket.gethostname()}:" in reported
         monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
         (entry,) = registered()
         assert entry.port == port and entry.url is not None

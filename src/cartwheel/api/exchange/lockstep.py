@@ -147,7 +147,7 @@ class Lockstep:
         self._deliver: dict[str, Callable[[Any], None]] = {}
         self._due = self._now
         self._begun = False
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         """Topics with several messages in a period."""
         self.late = 0
         """Number of periods in which a message was missing."""
@@ -279,8 +279,8 @@ class Lockstep:
         else:
             topic = ", ".join(read) or "no topic of the simulation"
             # Such as those of topics that a node cannot receive because of its quality of service.
-            told = [f"{each.message} [{each.code.number}]." for each in warnings]
-            hint = " ".join([f"Other nodes read {topic}.", *told])
+            reported = [f"{each.message} [{each.code.number}]." for each in warnings]
+            hint = " ".join([f"Other nodes read {topic}.", *reported])
         return TimedOutError(
             f"no message arrived on {', '.join(topics)} within {seconds:g} s of wall time, so the "
             "lockstep did not begin",
@@ -360,8 +360,8 @@ class Lockstep:
             self.extra += replaced
             if message is not None:
                 self._deliver[topic](message)
-            if replaced and self._begun and topic not in self._told:
-                self._told.add(topic)
+            if replaced and self._begun and topic not in self._reported:
+                self._reported.add(topic)
                 self._note_extra(topic, replaced + 1)
 
     def _note_late(self) -> None:

@@ -24,7 +24,7 @@ class SharedRayScenes:
         self._scenes: dict[int, RayScenes] = {}
         self.moved: frozenset[int] = frozenset()
         """Bodies that are fixed to the world and move at a velocity."""
-        self._told = AVAILABLE
+        self._reported = AVAILABLE
 
     def of(self, model: Any, data: Any, group: int) -> RayScenes:
         """The shapes of a group of geoms."""
@@ -35,9 +35,9 @@ class SharedRayScenes:
 
     def missing(self) -> Diagnostic | None:
         """The diagnostic that Embree is missing, at the first call."""
-        if self._told:
+        if self._reported:
             return None
-        self._told = True
+        self._reported = True
         return EMBREE_MISSING.diagnostic(
             "MuJoCo computes the rays of lidars, which takes longer in large worlds",
             hint="Install the package embreex, which exists for x86-64 processors.",

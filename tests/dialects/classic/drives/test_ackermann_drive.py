@@ -30,10 +30,10 @@ def test_car_circles_about_one_point(make, cart, read):
     world.publish("/cmd_vel", linear_x=speed, angular_z=angle)
     world.run(2.0)
     extra = {topic: world.mailbox(topic, size=10_000) for topic in ("/distance", "/steerangle")}
-    told = read(world, "/odom", 8.0)
+    reported = read(world, "/odom", 8.0)
     radius = base / math.tan(angle)
-    assert circle(path(told)) == pytest.approx(radius, rel=0.03)
-    assert turned(told) / 7.99 == pytest.approx(speed / radius, rel=0.03)
+    assert circle(path(reported)) == pytest.approx(radius, rel=0.03)
+    assert turned(reported) / 7.99 == pytest.approx(speed / radius, rel=0.03)
     (drive,) = world.session.shared.get(Drives).all
     assert drive.commanded(speed, angle) == pytest.approx((speed, speed / radius))
     assert drive.commanded(-speed, angle) == pytest.approx((-speed, speed / radius))
@@ -53,9 +53,9 @@ def test_car_in_reverse_turns_the_way_it_is_commanded(make, cart, read):
     world = spawn(make, cart(CAR, ackermann(), forks=FRONT))
     world.publish("/cmd_vel", linear_x=-0.5, angular_z=0.4)
     world.run(1.0)
-    told = read(world, "/odom", 2.0)
-    assert told[-1].twist.twist.linear.x == pytest.approx(-0.5, rel=0.05)
-    assert turned(told) > 0
+    reported = read(world, "/odom", 2.0)
+    assert reported[-1].twist.twist.linear.x == pytest.approx(-0.5, rel=0.05)
+    assert turned(reported) > 0
 
 
 def test_car_is_measured_at_its_axles_where_meshes_are_elsewhere(make, cart, read, tmp_path):

@@ -62,9 +62,9 @@ def test_world_odometry_is_the_truth(make, rosbots):
     for message in messages:
         time_ns, pose, linear, angular = truth[stamp(message)]
         assert stamp(message) == time_ns
-        told = pose_of(message)
-        assert told.position == pytest.approx(pose.position, abs=1e-9)
-        assert told.orientation == pytest.approx(pose.orientation, abs=1e-9)
+        reported = pose_of(message)
+        assert reported.position == pytest.approx(pose.position, abs=1e-9)
+        assert reported.orientation == pytest.approx(pose.orientation, abs=1e-9)
         twist = message.twist.twist
         cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
         assert twist.linear.x == pytest.approx(cos * linear[0] + sin * linear[1], abs=1e-9)
@@ -104,10 +104,10 @@ def test_encoder_odometry_is_the_wheels_turning(make, rosbots):
         else:
             x, y = x + forward * math.cos(heading), y + forward * math.sin(heading)
         heading += turn
-        told = pose_of(message)
+        reported = pose_of(message)
         # Near zero turning the arc's own formula loses digits: 1e-16 / 1e-12 a step at worst.
-        assert (told.x, told.y, told.z) == pytest.approx((x, y, 0), abs=1e-6)
-        assert math.remainder(told.yaw - heading, 2 * math.pi) == pytest.approx(0, abs=1e-9)
+        assert (reported.x, reported.y, reported.z) == pytest.approx((x, y, 0), abs=1e-6)
+        assert math.remainder(reported.yaw - heading, 2 * math.pi) == pytest.approx(0, abs=1e-9)
         assert message.twist.twist.linear.x == pytest.approx(forward / 0.01, abs=1e-9)
         assert message.twist.twist.angular.z == pytest.approx(turn / 0.01, abs=1e-9)
 
@@ -115,12 +115,12 @@ def test_encoder_odometry_is_the_wheels_turning(make, rosbots):
 def test_encoder_odometry_is_true_where_wheels_roll(make, rosbots):
     world = place(make, make.with_parameters(rosbots, PLUGIN, odometrySource="encoder"))
     start = world.model("rosbots").pose
-    told_start = pose_of(collect(world, ["/odom"], 0.01)["/odom"][-1])
+    reported_start = pose_of(collect(world, ["/odom"], 0.01)["/odom"][-1])
     world.publish(COMMAND, linear_x=0.5)
-    told = pose_of(collect(world, ["/odom"], 10.0)["/odom"][-1])
+    reported = pose_of(collect(world, ["/odom"], 10.0)["/odom"][-1])
     way = world.model("rosbots").pose.x - start.x
     # Half a percent: tyres creep under the load of the ramp and give way by 0.05 mm of 260.
-    assert told.x - told_start.x == pytest.approx(way, rel=5e-3)
+    assert reported.x - reported_start.x == pytest.approx(way, rel=5e-3)
     assert way > 4.5
 
 
@@ -128,36 +128,36 @@ def test_encoder_odometry_runs_ahead_where_wheels_slip(make, rosbots):
     """On ice of 0.02 the cart gains at most 0.02 g; its wheels, driven at 1 m/s², do not know."""
     robot = make.with_parameters(rosbots, PLUGIN, odometrySource="encoder")
     world = place(make, robot, ground=0.02)
-    told_start = pose_of(collect(world, ["/odom"], 0.01)["/odom"][-1])
+    reported_start = pose_of(collect(world, ["/odom"], 0.01)["/odom"][-1])
     start = world.model("rosbots").pose
     world.publish(COMMAND, linear_x=2.0)
-    told = pose_of(collect(world, ["/odom"], 2.0)["/odom"][-1])
+    reported = pose_of(collect(world, ["/odom"], 2.0)["/odom"][-1])
     way = world.model("rosbots").pose.x - start.x
-    assert told.x - told_start.x > 1.5
+    assert reported.x - reported_start.x > 1.5
     assert way < 0.02 * 9.8 * 2.0**2 / 2 * 1.05
 
 
 def test_messages_are_as_gazebo_prints_them(make, rosbots):
     world = place(make, rosbots)
-    told = collect(world, ["/odom", "/joint_states", "/tf", "/tf_static"], 0.1)
-    odometry = told["/odom"][0]
+    reported = collect(world, ["/odom", "/joint_states", "/tf", "/tf_static"], 0.1)
+    odometry = reported["/odom"][0]
     assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
     assert odometry.pose.covariance == pytest.approx(
         np.diag([1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3]).ravel()
     )
     assert not np.any(odometry.twist.covariance)
-    state = to_dict(told["/joint_states"][0])
+    state = to_dict(reported["/joint_states"][0])
     assert state["name"] == ["wheel_right_joint", "wheel_left_joint"]
     assert len(state["position"]) == 2
     assert (state["velocity"], state["effort"], state["header"]["frame_id"]) == ([], [], "")
-    transforms = told["/tf"][0].transforms
+    transforms = reported["/tf"][0].transforms
     # The root, so that robot_state_publisher's transforms below it leave one tree.
     assert [(t.header.frame_id, t.child_frame_id) for t in transforms] == [
         ("odom", "base_footprint"),
         ("base_link", "wheel_left_link"),
         ("base_link", "wheel_right_link"),
     ]
-    (fixed,) = told["/tf_static"][0].transforms
+    (fixed,) = reported["/tf_static"][0].transforms
     assert (fixed.header.frame_id, fixed.child_frame_id) == ("base_footprint", "base_link")
 
 
@@ -174,8 +174,8 @@ def test_joint_states_are_the_wheels_angles(make, rosbots):
     world.publish(COMMAND, linear_x=0.3, angular_z=0.5)
     world.run(2.0)
     assert len(seen) == 200
-    for told, true in seen:
-        assert told == true
+    for reported, true in seen:
+        assert reported == true
     right, left = seen[-1][0]
     assert right > left > 0 or left < 0 < right
 
@@ -183,9 +183,11 @@ def test_joint_states_are_the_wheels_angles(make, rosbots):
 def test_tf_is_the_odometry_and_the_wheels(make, rosbots):
     world = place(make, rosbots)
     world.publish(COMMAND, linear_x=0.5, angular_z=0.5)
-    told = collect(world, ["/odom", "/tf", "/joint_states"], 2.0)
-    assert len(told["/odom"]) == len(told["/tf"]) == 200
-    for odometry, tf, state in zip(told["/odom"], told["/tf"], told["/joint_states"], strict=True):
+    reported = collect(world, ["/odom", "/tf", "/joint_states"], 2.0)
+    assert len(reported["/odom"]) == len(reported["/tf"]) == 200
+    for odometry, tf, state in zip(
+        reported["/odom"], reported["/tf"], reported["/joint_states"], strict=True
+    ):
         base, left, right = tf.transforms
         assert stamp(base) == stamp(odometry) == stamp(state)
         # tf drops a transform of a child and stamp that it has, and robot_state_publisher
@@ -211,10 +213,10 @@ def test_tf_is_the_odometry_and_the_wheels(make, rosbots):
 def test_rates_are_exact_and_stamps_rise(make, rosbots):
     """100, 50 and 30 Hz over 10 s: 1000, 500 and 300 messages, 30 Hz on the steps that follow."""
     world = place(make, rosbots)
-    told = collect(
+    reported = collect(
         world, ["/odom", "/tf", "/joint_states", "/bumpers", "/imu/data", "/clock"], 10.0
     )
-    counts = {topic: len(messages) for topic, messages in told.items()}
+    counts = {topic: len(messages) for topic, messages in reported.items()}
     assert counts == {
         "/odom": 1000,
         "/tf": 1000,
@@ -224,16 +226,16 @@ def test_rates_are_exact_and_stamps_rise(make, rosbots):
         "/clock": counts["/clock"],
     }
     for topic in ("/odom", "/joint_states", "/bumpers", "/imu/data"):
-        times = np.array([stamp(message) for message in told[topic]])
+        times = np.array([stamp(message) for message in reported[topic]])
         assert (np.diff(times) > 0).all()
     step = round(DEFAULT_STEP * 1e9)
     start = 1_000_000_000
     for topic, rate in (("/odom", 100), ("/bumpers", 50), ("/imu/data", 30)):
-        for index, message in enumerate(told[topic], 1):
+        for index, message in enumerate(reported[topic], 1):
             due = start + index * 1e9 / rate
             # At its due time or at the step after it, never a whole step late.
             assert 0 <= stamp(message) - due < step
-    clock = [m.clock.sec * 10**9 + m.clock.nanosec for m in told["/clock"]]
+    clock = [m.clock.sec * 10**9 + m.clock.nanosec for m in reported["/clock"]]
     assert (np.diff(clock) > 0).all()
 
 

@@ -24,9 +24,9 @@ def test_planar_move_goes_sideways_in_its_own_frame(make, cart, read):
     world = spawn(make, cart(FOUR, PLANAR.format("")), Pose.from_xyz_rpy((0, 0, 0.002), (0, 0, 1)))
     world.publish("/cmd_vel", linear_x=0.2, linear_y=0.4)
     world.run(0.5)
-    told = read(world, "/odom", 4.0)
-    assert len(told) == 80
-    (x0, y0, yaw), (x1, y1, _) = where(told[0]), where(told[-1])
+    reported = read(world, "/odom", 4.0)
+    assert len(reported) == 80
+    (x0, y0, yaw), (x1, y1, _) = where(reported[0]), where(reported[-1])
     seconds = 79 / 20
     cos, sin = math.cos(1), math.sin(1)
     # The tyres' friction mu g takes 1/5 of what the servo has: 0.05 / 5 m/s.
@@ -34,9 +34,9 @@ def test_planar_move_goes_sideways_in_its_own_frame(make, cart, read):
     assert (y1 - y0) / seconds == pytest.approx(0.2 * sin + 0.4 * cos, abs=0.012)
     assert yaw == pytest.approx(1.0, abs=0.01)
     # The friction varies while the wheels turn.
-    twists = [message.twist.twist.linear for message in told]
-    assert sum(each.x for each in twists) / len(told) == pytest.approx(0.2, abs=0.012)
-    assert sum(each.y for each in twists) / len(told) == pytest.approx(0.4, abs=0.012)
+    twists = [message.twist.twist.linear for message in reported]
+    assert sum(each.x for each in twists) / len(reported) == pytest.approx(0.2, abs=0.012)
+    assert sum(each.y for each in twists) / len(reported) == pytest.approx(0.4, abs=0.012)
 
 
 def test_planar_move_closes_a_circle_looking_outwards(make, cart, read):
@@ -45,9 +45,9 @@ def test_planar_move_closes_a_circle_looking_outwards(make, cart, read):
     world = spawn(make, cart(FOUR, PLANAR.format(""), mu=0.1))
     world.publish("/cmd_vel", linear_y=speed, angular_z=turn)
     world.run(1.0)
-    told = read(world, "/odom", 2 * math.pi / turn)
-    assert circle(path(told)) == pytest.approx(speed / turn, rel=0.02)
-    assert np.linalg.norm(path(told)[-1] - path(told)[0]) < 0.06
+    reported = read(world, "/odom", 2 * math.pi / turn)
+    assert circle(path(reported)) == pytest.approx(speed / turn, rel=0.02)
+    assert np.linalg.norm(path(reported)[-1] - path(reported)[0]) < 0.06
 
 
 def test_planar_move_turns_a_wide_body_against_its_friction(make):

@@ -19,12 +19,12 @@ def test_skid_steer_goes_straight_as_commanded(make, cart, read):
     world = spawn(make, cart(FOUR, skid()))
     world.publish("/cmd_vel", linear_x=0.5)
     world.run(1.0)
-    told = read(world, "/odom", 4.0)
-    assert len(told) == 400
-    x, y, yaw = np.array(where(told[-1])) - np.array(where(told[0]))
+    reported = read(world, "/odom", 4.0)
+    assert len(reported) == 400
+    x, y, yaw = np.array(where(reported[-1])) - np.array(where(reported[0]))
     assert math.hypot(x, y) == pytest.approx(0.5 * 3.99, rel=0.01)
     assert abs(yaw) < 0.01
-    assert np.diag(told[0].pose.covariance.reshape(6, 6)) == pytest.approx(
+    assert np.diag(reported[0].pose.covariance.reshape(6, 6)) == pytest.approx(
         [1e-4, 1e-4, 1e12, 1e12, 1e12, 1e-2]
     )
 
@@ -39,13 +39,13 @@ def test_skid_steer_turns_by_what_sliding_leaves(make, cart, read):
     world = spawn(make, cart(FOUR, skid()))
     world.publish("/cmd_vel", angular_z=wanted)
     world.run(2.0)
-    told = read(world, "/odom", 6.0)
-    rate = turned(told) / 5.99
+    reported = read(world, "/odom", 6.0)
+    rate = turned(reported) / 5.99
     assert rate == pytest.approx(wanted * width**2 / (width**2 + length**2), rel=0.1)
     # The odometry is the truth, not what the wheels believe.
     yaw = world.model("cart").pose.yaw
-    assert math.remainder(where(told[-1])[2] - yaw, 2 * math.pi) == pytest.approx(0, abs=0.02)
-    assert told[-1].twist.twist.angular.z == pytest.approx(rate, rel=0.2)
+    assert math.remainder(where(reported[-1])[2] - yaw, 2 * math.pi) == pytest.approx(0, abs=0.02)
+    assert reported[-1].twist.twist.angular.z == pytest.approx(rate, rel=0.2)
 
 
 def test_skid_steer_publishes_its_transform_only_when_asked(make, cart):

@@ -42,15 +42,15 @@ def test_tricycle_circles_about_its_rear_axle(make, cart, read, source):
     world = spawn(make, cart(THREE, tricycle(tags), forks=("front",)))
     world.publish("/cmd_vel", linear_x=speed, angular_z=angle)
     world.run(1.5)
-    told = read(world, "/odom", 10.0)
-    assert circle(path(told)) == pytest.approx(base / math.tan(angle), rel=0.03)
-    assert turned(told) / 9.99 == pytest.approx(speed * math.sin(angle) / base, rel=0.03)
+    reported = read(world, "/odom", 10.0)
+    assert circle(path(reported)) == pytest.approx(base / math.tan(angle), rel=0.03)
+    assert turned(reported) / 9.99 == pytest.approx(speed * math.sin(angle) / base, rel=0.03)
     (drive,) = world.session.shared.get(Drives).all
     expected = (speed * math.cos(angle), speed * math.sin(angle) / base)
     assert drive.commanded(speed, angle) == pytest.approx(expected)
     truth = world.model("cart").pose
     if source == "world":
-        assert where(told[-1])[:2] == pytest.approx((truth.x, truth.y), abs=0.01)
+        assert where(reported[-1])[:2] == pytest.approx((truth.x, truth.y), abs=0.01)
 
 
 def test_tricycle_ramps_its_wheel_and_swings_its_fork(make, cart):
@@ -102,16 +102,16 @@ def test_every_tag_of_ros2s_tricycle_says_what_ros1s_does(make, cart):
       <robot_base_frame>left_wheel</robot_base_frame><update_rate>50</update_rate>
       <publish_odom>true</publish_odom><publish_wheel_tf>true</publish_wheel_tf>
       <publish_wheel_joint_state>true</publish_wheel_joint_state>""")
-    told = []
+    reported = []
     for plugin in (ros1, ros2):
         world = spawn(make, cart(THREE, plugin, forks=("front",)))
         boxes = [world.mailbox(topic, size=1000) for topic in ("/odom", "/tf", "/joint_states")]
         world.publish("/cmd_vel", linear_x=0.4, angular_z=0.6)
         world.run(1.0)
-        told.append([[to_dict(message) for message in box.drain()] for box in boxes])
+        reported.append([[to_dict(message) for message in box.drain()] for box in boxes])
         assert not coded(world, devices.PLUGIN_PARAMETER_UNKNOWN)
-    assert all(told[0])
-    assert told[0] == told[1]
+    assert all(reported[0])
+    assert reported[0] == reported[1]
 
 
 def test_ros2s_tricycle_publishes_nothing_unless_that_is_set(make, cart):

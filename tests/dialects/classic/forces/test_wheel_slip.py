@@ -127,13 +127,13 @@ def test_ros_2_s_spelling_publishes_the_slip_of_each_wheel(make, cart, read):
     world.publish("/cmd_vel", linear_x=0.5)
     push(world, x=-20.0, y=16.0)
     world.run(1.5)
-    told = read(world, "/wheel_slip", 0.5)
-    assert len(told) == 50
-    assert told[-1].name == [f"{name}_wheel" for name in WHEELS]
-    assert np.mean(told[-1].longitudinal_slip) == pytest.approx(5 / NORMAL, rel=0.05)
+    reported = read(world, "/wheel_slip", 0.5)
+    assert len(reported) == 50
+    assert reported[-1].name == [f"{name}_wheel" for name in WHEELS]
+    assert np.mean(reported[-1].longitudinal_slip) == pytest.approx(5 / NORMAL, rel=0.05)
     aside = math.atan2(0.5 * 4 / NORMAL, 1 - 5 / NORMAL)
     # Along the axle, which points to the left or right as the joint's axis does.
-    assert abs(np.mean(told[-1].lateral_slip)) == pytest.approx(aside, rel=0.1)
+    assert abs(np.mean(reported[-1].lateral_slip)) == pytest.approx(aside, rel=0.1)
 
 
 def test_ros_1_s_spelling_can_be_reconfigured(make, cart, ask):

@@ -81,9 +81,9 @@ def test_what_is_no_floor_is_reported_and_left(world, text):
     before = len(world.session.diagnostics)
     order(world, text)
     world.run(3.0)
-    (told,) = world.session.diagnostics[before:]
-    assert told.code is running.COMMAND_IGNORED
-    assert told.values["floor"] == text
+    (reported,) = world.session.diagnostics[before:]
+    assert reported.code is running.COMMAND_IGNORED
+    assert reported.values["floor"] == text
     assert joint(world, "lift") == pytest.approx(0.0, abs=1e-3)
 
 

@@ -31,8 +31,8 @@ def test_a_block_laser_leaves_out_what_it_does_not_hit(make):
 
 def test_a_block_lasers_noise_is_of_each_coordinate(make):
     tags = "<topicName>cloud</topicName><gaussianNoise>0.05</gaussianNoise>"
-    told = messages(world_of(make, "libgazebo_ros_block_laser.so", tags), "/cloud", 6.0)
-    points = np.array([[(p.x, p.y, p.z) for p in message.points] for message in told])
+    reported = messages(world_of(make, "libgazebo_ros_block_laser.so", tags), "/cloud", 6.0)
+    points = np.array([[(p.x, p.y, p.z) for p in message.points] for message in reported])
     error = points - on_the_wall().reshape(-1, 3)
     count = error[..., 0].size
     for axis in range(3):

@@ -134,9 +134,9 @@ def test_prosilica_streams(make):
     polled = make.world()
     polled.session.graph.parameters.set("/eye/trigger_mode", "polled")
     polled.session.spawn(make.sdf(model))
-    (told,) = polled.diagnostics
-    assert told.code is devices.PLUGIN_PARAMETER_IGNORED
-    assert told.values["parameter"] == "trigger_mode"
+    (reported,) = polled.diagnostics
+    assert reported.code is devices.PLUGIN_PARAMETER_IGNORED
+    assert reported.values["parameter"] == "trigger_mode"
 
 
 @pytest.mark.parametrize(
@@ -189,8 +189,8 @@ def test_a_view_that_no_pinhole_has_is_reported(make, kind):
 @pytest.mark.parametrize("written", ["lens", "save", "visibility_mask"])
 def test_what_is_not_done_is_reported(make, written):
     world = make.world(make.sdf(sensor(inside=f"<{written}>1</{written}>")))
-    (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert told.code is devices.SENSOR_SETTING_IGNORED
-    assert told.values["setting"] == written
+    (reported,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert reported.code is devices.SENSOR_SETTING_IGNORED
+    assert reported.values["setting"] == written
     off = make.world(make.sdf(sensor(inside='<save enabled="false"/>')))
     assert not [d for d in off.diagnostics if d.severity == "warning"]

@@ -34,8 +34,8 @@ def test_a_sensor_without_a_lens_has_sdf_s_own(make):
     assert (image.width, image.height) == (320, 240)
     focal = take(world, "/k/depth/camera_info").k[0]
     assert focal == pytest.approx(160 / math.tan(1.047 / 2), rel=1e-3)
-    (told,) = coded(world, devices.SENSOR_INCOMPLETE, missing="camera")
-    assert told.severity == "warning"
+    (reported,) = coded(world, devices.SENSOR_INCOMPLETE, missing="camera")
+    assert reported.severity == "warning"
 
 
 @pytest.mark.parametrize("distance", [0.5, 2.0, 4.9])
@@ -84,13 +84,13 @@ def test_cutoffs(make, filename, tags, near, far):
     )
     depths = depths_of(take(world, "/k/depth/image_raw"))
     expected = far_below(0.1)
-    told = ~np.isnan(depths)
-    assert told.any()
+    reported = ~np.isnan(depths)
+    assert reported.any()
     low, high = 1.01 * near, 0.99 * min(far, 50.0)
-    assert told[(expected > low) & (expected < high)].all()
-    assert not told[(expected < 0.99 * near) | (expected > 1.01 * far)].any()
-    assert depths[told].min() > near
-    assert depths[told].max() < far
+    assert reported[(expected > low) & (expected < high)].all()
+    assert not reported[(expected < 0.99 * near) | (expected > 1.01 * far)].any()
+    assert depths[reported].min() > near
+    assert depths[reported].max() < far
 
 
 def test_millimetres(make):
@@ -138,10 +138,14 @@ def test_points_are_where_things_are(make):
     assert cloud["y"][front].min() == pytest.approx(-0.4, abs=pixel)
     assert cloud["y"][front].max() == pytest.approx(0.0, abs=pixel)
     right, down = rays()
-    told = ~np.isnan(depths)
-    assert np.array_equal(np.isnan(cloud["x"]), ~told)
-    np.testing.assert_allclose(cloud["x"][told], (right * depths)[told], rtol=1e-5, atol=1e-6)
-    np.testing.assert_allclose(cloud["y"][told], (down * depths)[told], rtol=1e-5, atol=1e-6)
+    reported = ~np.isnan(depths)
+    assert np.array_equal(np.isnan(cloud["x"]), ~reported)
+    np.testing.assert_allclose(
+        cloud["x"][reported], (right * depths)[reported], rtol=1e-5, atol=1e-6
+    )
+    np.testing.assert_allclose(
+        cloud["y"][reported], (down * depths)[reported], rtol=1e-5, atol=1e-6
+    )
     packed = np.ascontiguousarray(cloud["rgb"]).view(np.uint32)
     assert np.array_equal(packed >> 16 & 255, pixels[..., 0])
     assert np.array_equal(packed >> 8 & 255, pixels[..., 1])
@@ -154,12 +158,12 @@ def test_topics_and_services_are_gazebos(make):
     own = {name for name in topic_names(world) if name.startswith("/k/")}
     plain = {"depth/camera_info", "depth/image_raw", "ir/camera_info", "ir/image_raw", "points"}
     packed = {"ir/image_raw/compressed", "ir/image_raw/compressedDepth"}
-    told = {
+    reported = {
         f"{base}parameter_{kind}"
         for base in ("", *(f"{name}/" for name in packed))
         for kind in ("descriptions", "updates")
     }
-    assert own == {f"/k/{name}" for name in plain | packed | told}
+    assert own == {f"/k/{name}" for name in plain | packed | reported}
     assert {name for name in service_names(world) if name.startswith("/k/")} == {
         "/k/set_camera_info",
         "/k/set_parameters",
@@ -193,7 +197,7 @@ def test_colours_alone_cost_no_depth(make):
 
 ROS2 = """<ros><namespace>robot</namespace>
   <remapping>/robot/eye/points:=/robot/eye/depth/color/points</remapping>
-  <remapping>eye/camera_info:=told</remapping></ros>
+  <remapping>eye/camera_info:=reported</remapping></ros>
   <camera_name>eye</camera_name><frame_name>optical</frame_name>
   <min_depth>1.0</min_depth><max_depth>3.0</max_depth>"""
 
@@ -204,7 +208,7 @@ def test_ros2s_camera_does_depths_by_the_sensors_type(make):
     assert own == {
         "/robot/eye/image_raw",
         "/robot/eye/image_raw/compressed",
-        "/robot/told",
+        "/robot/reported",
         "/robot/eye/depth/image_raw",
         "/robot/eye/depth/image_raw/compressedDepth",
         "/robot/eye/depth/camera_info",
@@ -236,17 +240,17 @@ def test_compressed_depths_are_read_back(make):
     assert kind == 1
     steps = np.asarray(Image.open(io.BytesIO(data[12:]))).astype(float)
     assert steps.shape == (240, 320)
-    told = np.isfinite(depths) & (depths < 10)
-    assert np.array_equal(steps > 0, told)
-    found = a / (steps[told] - b)
+    reported = np.isfinite(depths) & (depths < 10)
+    assert np.array_equal(steps > 0, reported)
+    found = a / (steps[reported] - b)
     # A step less or more, at depth z z² / a.
-    assert (np.abs(found - depths[told]) <= 1.01 * depths[told] ** 2 / a + 1e-6).all()
+    assert (np.abs(found - depths[reported]) <= 1.01 * depths[reported] ** 2 / a + 1e-6).all()
 
 
 def test_what_gazebo_11_does_not_publish_is_reported(make):
     tags = "<cameraName>k</cameraName><normalsTopicName>n</normalsTopicName>"
     world = make.world(make.sdf(kinect(tags, DEPTH)))
-    (told,) = [d for d in world.diagnostics if d.severity == "warning"]
-    assert told.code is devices.PLUGIN_PARAMETER_IGNORED
-    assert told.values["parameter"] == "normalsTopicName"
-    assert told.origin is not None
+    (reported,) = [d for d in world.diagnostics if d.severity == "warning"]
+    assert reported.code is devices.PLUGIN_PARAMETER_IGNORED
+    assert reported.values["parameter"] == "normalsTopicName"
+    assert reported.origin is not None

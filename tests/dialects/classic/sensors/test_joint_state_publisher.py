@@ -72,8 +72,8 @@ def test_a_joint_that_has_no_single_position_is_reported_and_the_others_are_publ
     plugin = joint_states("<jointName>turn,wrist</jointName>")
     world = make.world(make.sdf(arm(plugin, "ball")), ground=None)
     assert read(world, "/arm/joint_states", 0.1)[0].name == ["turn"]
-    (told,) = coded(world, running.JOINT_WITHOUT_STATE, joint="wrist")
-    assert told.severity == "warning"
+    (reported,) = coded(world, running.JOINT_WITHOUT_STATE, joint="wrist")
+    assert reported.severity == "warning"
 
 
 def test_a_negative_rate_is_reported_at_its_tag(make):

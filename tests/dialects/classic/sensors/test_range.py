@@ -44,10 +44,10 @@ def test_nothing_reads_as_the_maximum_and_the_too_near_as_the_minimum(make):
     assert messages(near)[0].range == pytest.approx(0.3)
 
 
-@pytest.mark.parametrize(("asked", "told"), [("", 20), ("8", 8), ("100", 20)])
-def test_the_slower_of_the_two_rates_counts(make, asked, told):
+@pytest.mark.parametrize(("asked", "reported"), [("", 20), ("8", 8), ("100", 20)])
+def test_the_slower_of_the_two_rates_counts(make, asked, reported):
     tags = "<topicName>front</topicName>" + (f"<updateRate>{asked}</updateRate>" if asked else "")
-    assert len(messages(make.world(make.sdf(finder(tags))), seconds=2.0)) == 2 * told + 1
+    assert len(messages(make.world(make.sdf(finder(tags))), seconds=2.0)) == 2 * reported + 1
 
 
 @pytest.mark.parametrize(
@@ -59,8 +59,8 @@ def test_the_slower_of_the_two_rates_counts(make, asked, told):
 )
 def test_noise_is_of_the_range_not_of_the_rays(make, tags, rays):
     text = finder("<topicName>front</topicName>" + tags, rate=200, noise=rays)
-    told = messages(make.world(wall(make, 2.0), make.sdf(text)), seconds=5.0)
-    readings = np.array([message.range for message in told])
+    reported = messages(make.world(wall(make, 2.0), make.sdf(text)), seconds=5.0)
+    readings = np.array([message.range for message in reported])
     count = len(readings)
     assert count == 1001
     # The least of 25 noisy rays would be 2 standard deviations short.
@@ -70,8 +70,8 @@ def test_noise_is_of_the_range_not_of_the_rays(make, tags, rays):
 
 def test_noise_stays_within_the_limits(make):
     text = finder("<topicName>front</topicName><gaussianNoise>1</gaussianNoise>", rate=100)
-    told = messages(make.world(wall(make, 2.0), make.sdf(text)), seconds=2.0)
-    readings = [message.range for message in told]
+    reported = messages(make.world(wall(make, 2.0), make.sdf(text)), seconds=2.0)
+    readings = [message.range for message in reported]
     assert min(readings) >= 0.05
     assert max(readings) == 4.0
 

@@ -87,8 +87,8 @@ def test_odometry_publishes_the_truth_in_five_forms(make, read):
     topics = ("pose", "pose_with_covariance", "position", "transform", "odometry")
     boxes = {topic: world.mailbox(f"/bee/{topic}", size=1) for topic in topics}
     world.run(0.5)
-    told = {topic: box.drain()[-1] for topic, box in boxes.items()}
-    odometry = told["odometry"]
+    reported = {topic: box.drain()[-1] for topic, box in boxes.items()}
+    odometry = reported["odometry"]
     place = odometry.pose.pose.position
     # It falls for half a second, and is published until one step before the end.
     step = world.session.simulation.step_ns * 1e-9
@@ -96,10 +96,10 @@ def test_odometry_publishes_the_truth_in_five_forms(make, read):
     assert place.z == pytest.approx(30 - G * 0.5**2 / 2, abs=G * 0.5 * 2 * step)
     assert odometry.twist.twist.linear.z == pytest.approx(-G * 0.5, abs=2 * G * step)
     assert (odometry.header.frame_id, odometry.child_frame_id) == ("world", "bee/eye")
-    assert told["pose"].position == place
-    assert told["pose_with_covariance"].pose.pose.position == place
-    assert told["position"].point == place
-    where = told["transform"].transform.translation
+    assert reported["pose"].position == place
+    assert reported["pose_with_covariance"].pose.pose.position == place
+    assert reported["position"].point == place
+    where = reported["transform"].transform.translation
     assert (where.x, where.y, where.z) == (place.x, place.y, place.z)
     (tf,) = read(world, "/tf", step)[-1].transforms
     assert (tf.header.frame_id, tf.child_frame_id) == ("world", "bee/eye")
@@ -112,12 +112,12 @@ def test_odometry_comes_every_so_many_steps_with_its_noise(make, read):
     world = make.world()
     world.session.spawn(bee(make, plugin("odometry_plugin", tags)), pose=Pose((0, 0, 0.025)))
     world.run(1.0)
-    told = read(world, "/bee/odometry", 10.0)
+    reported = read(world, "/bee/odometry", 10.0)
     step = world.session.simulation.step_ns * 1e-9
-    assert len(told) == pytest.approx(10.0 / step / 4, abs=1)
-    x = np.array([message.pose.pose.position.x for message in told])
-    y = np.array([message.pose.pose.position.y for message in told])
+    assert len(reported) == pytest.approx(10.0 / step / 4, abs=1)
+    x = np.array([message.pose.pose.position.x for message in reported])
+    y = np.array([message.pose.pose.position.y for message in reported])
     assert x.std() == pytest.approx(0.1, rel=0.2)
     assert y.std() == pytest.approx(0.2 / math.sqrt(3), rel=0.2)
     assert np.abs(y - y.mean()).max() <= 0.2 + 0.05
-    assert told[0].pose.covariance[0] == pytest.approx(0.01)
+    assert reported[0].pose.covariance[0] == pytest.approx(0.01)

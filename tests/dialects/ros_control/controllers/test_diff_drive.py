@@ -81,10 +81,10 @@ def test_it_drives_at_the_speed_that_it_is_commanded(drive):
     start = made.model.pose.x
     made.go(4.0, linear=0.5)
     assert made.model.pose.x - start == pytest.approx(2.0, rel=0.02)
-    told = made.odometry()
-    assert told.twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
-    assert told.pose.covariance.reshape(6, 6).diagonal().tolist() == [1, 2, 3, 4, 5, 6]
-    assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_link")
+    reported = made.odometry()
+    assert reported.twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
+    assert reported.pose.covariance.reshape(6, 6).diagonal().tolist() == [1, 2, 3, 4, 5, 6]
+    assert (reported.header.frame_id, reported.child_frame_id) == ("odom", "base_link")
 
 
 def test_swapped_wheels_are_reported(drive):
@@ -155,11 +155,13 @@ def test_a_circle_closes(drive):
         place = made.model.pose
         far = max(far, math.hypot(place.x - start.x, place.y - start.y))
     assert far == pytest.approx(2 * speed / turn, rel=0.03)
-    told = made.odometry().pose.pose.position
+    reported = made.odometry().pose.pose.position
     place = made.model.pose
     assert math.hypot(place.x - start.x, place.y - start.y) < 0.08
-    assert math.hypot(told.x, told.y) < 0.08
-    assert (told.x, told.y) == pytest.approx((place.x - start.x, place.y - start.y), abs=0.03)
+    assert math.hypot(reported.x, reported.y) < 0.08
+    assert (reported.x, reported.y) == pytest.approx(
+        (place.x - start.x, place.y - start.y), abs=0.03
+    )
 
 
 def test_a_command_counts_for_half_a_second(drive):
@@ -279,8 +281,8 @@ def test_wheels_that_two_controllers_want_go_to_the_base_s(make, tmp_path):
     drive = Drive(make, tmp_path, cart(ROS1), content)
     drive.go(3.0, linear=0.5)
     assert drive.odometry().twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
-    (told,) = coded(drive.world, running.CONTROLLER_NOT_STARTED)
-    assert told.values["cause"] == running.CONTROLLER_CONFLICT.number
+    (reported,) = coded(drive.world, running.CONTROLLER_NOT_STARTED)
+    assert reported.values["cause"] == running.CONTROLLER_CONFLICT.number
 
 
 @pytest.mark.wording

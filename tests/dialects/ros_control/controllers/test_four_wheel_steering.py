@@ -99,13 +99,13 @@ def test_odometry_and_measured_angles_are_published(make, tmp_path):
     made.twist(2.0, 0.3, 0.5)
     odometry, state = box.drain(), states.drain()
     assert len(odometry) == len(state) == len(frames.drain()) == 40
-    told, moved = odometry[-1], made.moved(begin)
-    assert heading(told) == pytest.approx(moved[2], rel=0.05)
-    place = told.pose.pose.position
+    reported, moved = odometry[-1], made.moved(begin)
+    assert heading(reported) == pytest.approx(moved[2], rel=0.05)
+    place = reported.pose.pose.position
     assert math.hypot(place.x, place.y) == pytest.approx(math.hypot(*moved[:2]), rel=0.05)
-    assert told.twist.twist.linear.x == pytest.approx(0.3, rel=0.02)
-    assert told.twist.twist.angular.z == pytest.approx(0.5, rel=0.02)
-    assert told.pose.covariance[7] == 2.0
+    assert reported.twist.twist.linear.x == pytest.approx(0.3, rel=0.02)
+    assert reported.twist.twist.angular.z == pytest.approx(0.5, rel=0.02)
+    assert reported.pose.covariance[7] == 2.0
     angle = math.atan(0.5 * BASE / 2 / 0.3)
     data = state[-1].data
     assert data.front_steering_angle == pytest.approx(angle, rel=0.01)
@@ -136,12 +136,12 @@ def test_limits_bind(make, tmp_path):
 def test_an_axle_of_three_wheels_is_reported(make, tmp_path):
     names = ["front_left_joint", "front_right_joint", "rear_left_joint"]
     made = FourWheels(make, tmp_path, front_wheel=names)
-    (told,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
-    assert told.values["parameter"] == "front_wheel"
+    (reported,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
+    assert reported.values["parameter"] == "front_wheel"
     assert not coded(made.world, devices.CONTROLLER_PARAMETER_UNKNOWN)
 
 
 def test_a_wheel_base_that_is_not_positive_is_reported(make, tmp_path):
     made = FourWheels(make, tmp_path, wheel_base=0.0)
-    (told,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
-    assert told.values["parameter"] == "wheel_base"
+    (reported,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
+    assert reported.values["parameter"] == "wheel_base"

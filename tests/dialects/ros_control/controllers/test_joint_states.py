@@ -22,7 +22,7 @@ UPRIGHT = "0 0 1"
 
 
 @pytest.fixture
-def told(bench, tmp_path):
+def reported(bench, tmp_path):
     """The last message of a broadcaster of two joints, the first of them at 0.4 rad."""
 
     def make(topic, **settings):
@@ -44,8 +44,8 @@ def told(bench, tmp_path):
     return make
 
 
-def test_all_interfaces_are_reported_by_name(told):
-    message, made = told("/dynamic_joint_states", extra_joints=["wheel"])
+def test_all_interfaces_are_reported_by_name(reported):
+    message, made = reported("/dynamic_joint_states", extra_joints=["wheel"])
     assert message.joint_names == ["a_joint", "b_joint", "wheel"]
     first, second, extra = message.interface_values
     assert first.interface_names == ["position", "velocity", "effort"]
@@ -57,8 +57,8 @@ def test_all_interfaces_are_reported_by_name(told):
 
 
 @pytest.mark.parametrize("topic", ["/joint_states", "/dynamic_joint_states"])
-def test_recorders_receive_the_bytes_of_the_same_message(told, topic):
-    message, made = told(topic, extra_joints=["wheel"])
+def test_recorders_receive_the_bytes_of_the_same_message(reported, topic):
+    message, made = reported(topic, extra_joints=["wheel"])
     taken = []
     made.world.graph.subscribe(topic, print, take_values=lambda *given: taken.append(given))
     made.world.run(0.1)
@@ -69,30 +69,30 @@ def test_recorders_receive_the_bytes_of_the_same_message(told, topic):
     assert len(encode_cdr(same)) == len(encode_cdr(message))  # the same names and lengths
 
 
-def test_joints_and_interfaces_are_chosen_together(told):
-    message, made = told("/joint_states", joints=["a_joint"], interfaces=["position"])
+def test_joints_and_interfaces_are_chosen_together(reported):
+    message, made = reported("/joint_states", joints=["a_joint"], interfaces=["position"])
     assert message.name == ["a_joint"]
     assert list(message.position) == pytest.approx([0.4], abs=1e-3)
     assert [math.isnan(each) for each in (*message.velocity, *message.effort)] == [True, True]
     assert made.warnings == []
 
 
-def test_joints_alone_choose_nothing(told):
-    message, made = told("/joint_states", joints=["a_joint"])
+def test_joints_alone_choose_nothing(reported):
+    message, made = reported("/joint_states", joints=["a_joint"])
     assert message.name == ["a_joint", "b_joint"]
-    (told,) = coded(made.warnings, devices.CONTROLLER_PARAMETER_UNKNOWN)
-    assert told.values["parameters"][0] == "joints"
+    (reported,) = coded(made.warnings, devices.CONTROLLER_PARAMETER_UNKNOWN)
+    assert reported.values["parameters"][0] == "joints"
 
 
-def test_topics_may_be_below_the_broadcaster(told):
-    message, _ = told("/states/joint_states", use_local_topics=True, frame_id="torso")
+def test_topics_may_be_below_the_broadcaster(reported):
+    message, _ = reported("/states/joint_states", use_local_topics=True, frame_id="torso")
     assert message.header.frame_id == "torso"
-    message, _ = told("/states/dynamic_joint_states", use_local_topics=True)
+    message, _ = reported("/states/dynamic_joint_states", use_local_topics=True)
     assert message.joint_names == ["a_joint", "b_joint"]
 
 
-def test_a_field_may_be_another_interface(told):
-    message, made = told(
+def test_a_field_may_be_another_interface(reported):
+    message, made = reported(
         "/joint_states",
         map_interface_to_joint_state={"velocity": "position", "effort": "current"},
     )
@@ -101,6 +101,6 @@ def test_a_field_may_be_another_interface(told):
     assert coded(made.warnings, devices.INTERFACE_UNKNOWN, interface="current")
 
 
-def test_the_interfaces_need_not_be_stated(told):
-    _, made = told("/joint_states", publish_dynamic_joint_states=False)
+def test_the_interfaces_need_not_be_stated(reported):
+    _, made = reported("/joint_states", publish_dynamic_joint_states=False)
     assert "/dynamic_joint_states" not in {each.name for each in made.world.graph.topics()}

@@ -105,8 +105,8 @@ def test_husarions_controller_of_the_same_name_has_its_own_parameters(make, tmp_
     assert found == pytest.approx(wheels(*motion), abs=0.05)
     made.go(1.0, y=0.3)
     assert made.odometry("/base/odom").twist.twist.linear.y == pytest.approx(0.3, rel=0.05)
-    (told,) = coded(made.world, devices.CONTROLLER_PARAMETER_UNKNOWN)
-    assert told.values["parameters"] == ("open_loop",)
+    (reported,) = coded(made.world, devices.CONTROLLER_PARAMETER_UNKNOWN)
+    assert reported.values["parameters"] == ("open_loop",)
     made.world.run(0.8)
     assert made.odometry("/base/odom").twist.twist.linear.y == pytest.approx(0, abs=0.02)
 
@@ -119,9 +119,9 @@ def test_it_goes_sideways_and_its_odometry_knows(drive):
     assert end[1] - y == pytest.approx(0.6, rel=0.05)
     assert abs(end[0] - x) < 0.02
     assert abs(end[2]) < 0.03
-    told = made.odometry()
-    assert told.pose.pose.position.y == pytest.approx(0.6, rel=0.08)
-    assert told.twist.twist.linear.y == pytest.approx(0.3, rel=0.05)
+    reported = made.odometry()
+    assert reported.pose.pose.position.y == pytest.approx(0.6, rel=0.08)
+    assert reported.twist.twist.linear.y == pytest.approx(0.3, rel=0.05)
 
 
 def test_a_circle_sideways_closes(drive):
@@ -164,10 +164,10 @@ def test_the_base_frame_may_be_off_the_wheels_centre(drive):
     made.go(1.0, turn=0.5)
     found = made.speeds(*(f"{name}_joint" for name in NAMES))
     assert found == pytest.approx(wheels(0.0, -0.2 * 0.5, 0.5), abs=0.05)
-    told = made.odometry()
+    reported = made.odometry()
     # The base frame itself only turns.
-    assert abs(told.twist.twist.linear.x) < 0.01
-    assert abs(told.twist.twist.linear.y) < 0.01
-    assert told.twist.twist.angular.z == pytest.approx(0.5, rel=0.05)
-    assert math.hypot(told.pose.pose.position.x, told.pose.pose.position.y) < 0.01
-    assert heading(told) == pytest.approx(0.5 * 1.15, rel=0.15)
+    assert abs(reported.twist.twist.linear.x) < 0.01
+    assert abs(reported.twist.twist.linear.y) < 0.01
+    assert reported.twist.twist.angular.z == pytest.approx(0.5, rel=0.05)
+    assert math.hypot(reported.pose.pose.position.x, reported.pose.pose.position.y) < 0.01
+    assert heading(reported) == pytest.approx(0.5 * 1.15, rel=0.15)

@@ -90,19 +90,19 @@ def test_its_odometry_is_published_at_each_update(drive):
     frames = made.world.graph.mailbox("/tf", size=1000)
     x, y, yaw = made.place
     made.go(2.0, 0.2, -0.1, 0.4)
-    told = box.drain()
-    assert len(told) == pytest.approx(200, abs=2)
+    reported = box.drain()
+    assert len(reported) == pytest.approx(200, abs=2)
     assert len(frames.drain()) == pytest.approx(200, abs=2)
-    pose, twist = told[-1].pose.pose, told[-1].twist.twist
+    pose, twist = reported[-1].pose.pose, reported[-1].twist.twist
     ended = made.place
-    assert heading(told[-1]) == pytest.approx(ended[2] - yaw, rel=0.05)
+    assert heading(reported[-1]) == pytest.approx(ended[2] - yaw, rel=0.05)
     assert math.hypot(pose.position.x, pose.position.y) == pytest.approx(
         math.hypot(ended[0] - x, ended[1] - y), rel=0.05
     )
     assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(
         (0.2, -0.1, 0.4), abs=0.02
     )
-    assert (told[-1].header.frame_id, told[-1].child_frame_id) == ("odom", "base_link")
+    assert (reported[-1].header.frame_id, reported[-1].child_frame_id) == ("odom", "base_link")
 
 
 def test_it_stops_without_commands(drive):
@@ -123,18 +123,18 @@ def test_covariances_are_those_stated(make, tmp_path):
 
 def test_two_wheels_are_too_few(make, tmp_path):
     made = Omni(make, tmp_path, wheel_names=["wheel0_joint", "wheel1_joint"])
-    (told,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
-    assert told.values["parameter"] == "wheel_names"
+    (reported,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
+    assert reported.values["parameter"] == "wheel_names"
 
 
 @pytest.mark.parametrize("name", ["robot_radius", "wheel_radius"])
 def test_a_size_that_is_not_positive_is_reported(make, tmp_path, name):
     made = Omni(make, tmp_path, **{name: 0.0})
-    (told,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
-    assert told.values["parameter"] == name
+    (reported,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
+    assert reported.values["parameter"] == name
 
 
 def test_an_axis_that_points_inwards_is_reported(make, tmp_path):
     made = Omni(make, tmp_path, inwards=(1,))
-    (told,) = coded(made.world, robot.WHEEL_AXIS_MISALIGNED)
-    assert told.values["joint"] == "wheel1_joint"
+    (reported,) = coded(made.world, robot.WHEEL_AXIS_MISALIGNED)
+    assert reported.values["joint"] == "wheel1_joint"

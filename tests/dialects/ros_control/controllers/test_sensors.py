@@ -28,11 +28,11 @@ def sensor(name, kind, pose="", inside=""):
 def spawn(bench, tmp_path, body, tags, sensors, **controllers):
     file = tmp_path / "own.yaml"
     file.write_text(yaml.safe_dump(ros2_parameters(**controllers)))
-    told = "".join(
+    reported = "".join(
         f'<sensor name="{name}"><state_interface name="{state}"/></sensor>'
         for name, state in sensors.items()
     )
-    hardware = system(ros2_joint("beam_joint", "position", "velocity"), told)
+    hardware = system(ros2_joint("beam_joint", "position", "velocity"), reported)
     urdf = robot(body + hardware, ros2_plugin(file)).replace("</robot>", f"{tags}</robot>")
     made = bench(urdf)
     made.world.run(0.1)
@@ -45,7 +45,7 @@ def imu(bench, tmp_path, inside="", pose=f"{ARM} 0 0 0 0 {math.pi / 2}", **more)
     made = spawn(
         bench, tmp_path, beam("beam", "world", axis="0 0 1", kind="continuous"), tags,
         {"unit": "orientation.x"},
-        told={
+        reported={
             "type": "imu_sensor_broadcaster/IMUSensorBroadcaster",
             "sensor_name": "unit",
             "frame_id": "unit_frame",
@@ -65,7 +65,7 @@ def test_an_imu_feels_the_centre_and_the_ground(bench, tmp_path):
     """In its axes: gravity's reaction up, and inwards, which is its y, the rate squared."""
     covariance = [float(number) for number in range(9)]
     made = imu(bench, tmp_path, static_covariance_angular_velocity=covariance)
-    box = made.box("/told/imu")
+    box = made.box("/reported/imu")
     made.world.run(0.1)
     found = box.drain()
     assert len(found) == 10
@@ -89,7 +89,7 @@ def test_an_imu_has_the_noise_of_its_sensor(bench, tmp_path):
         for axis in "xyz"
     )
     made = imu(bench, tmp_path, f"<imu><angular_velocity>{noise}</angular_velocity></imu>")
-    box = made.box("/told/imu")
+    box = made.box("/reported/imu")
     made.world.run(4.0)
     rates = [each.angular_velocity.z for each in box.drain()]
     mean = sum(rates) / len(rates)
@@ -101,11 +101,13 @@ def test_an_imu_has_the_noise_of_its_sensor(bench, tmp_path):
 
 def force(bench, tmp_path, inside="", **more):
     """A beam that is held out level by a joint which measures what it bears."""
-    told = sensor("load", "force_torque", inside=f"<force_torque>{inside}</force_torque>")
-    tags = f'<gazebo reference="beam_joint"><provideFeedback>true</provideFeedback>{told}</gazebo>'
+    reported = sensor("load", "force_torque", inside=f"<force_torque>{inside}</force_torque>")
+    tags = (
+        f'<gazebo reference="beam_joint"><provideFeedback>true</provideFeedback>{reported}</gazebo>'
+    )
     made = spawn(
         bench, tmp_path, beam("beam", "world"), tags, {"load": "force.z"},
-        told={
+        reported={
             "type": "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",
             "sensor_name": "load",
             "frame_id": "load_frame",
@@ -118,7 +120,7 @@ def force(bench, tmp_path, inside="", **more):
     )  # fmt: skip
     made.publish("/hold/commands", "std_msgs/msg/Float64MultiArray", data=[0.0])
     made.world.run(0.5)
-    box = made.box("/told/wrench")
+    box = made.box("/reported/wrench")
     made.world.run(0.05)
     wrench = box.drain()[-1].wrench
     return [wrench.force.x, wrench.force.y, wrench.force.z,

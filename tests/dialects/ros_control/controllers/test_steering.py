@@ -86,11 +86,11 @@ def test_it_drives_that_circle_and_publishes_it(ackermann):
     made.go(2.0, x=SPEED, turn=TURN)
     turned = made.place[2] - before
     assert turned == pytest.approx(2.0 * TURN, rel=0.05)
-    told = made.odometry()
-    assert heading(told) - heading(first) == pytest.approx(2.05 * TURN, rel=0.02)
-    assert told.twist.twist.linear.x == pytest.approx(SPEED, rel=0.02)
-    assert told.twist.twist.angular.z == pytest.approx(TURN, rel=0.02)
-    assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_link")
+    reported = made.odometry()
+    assert heading(reported) - heading(first) == pytest.approx(2.05 * TURN, rel=0.02)
+    assert reported.twist.twist.linear.x == pytest.approx(SPEED, rel=0.02)
+    assert reported.twist.twist.angular.z == pytest.approx(TURN, rel=0.02)
+    assert (reported.header.frame_id, reported.child_frame_id) == ("odom", "base_link")
     # From the rear axle's middle at the start, the centre is a radius to the left.
     rear = (x - BASE / 2 * math.cos(yaw), y - BASE / 2 * math.sin(yaw))
     centre = (rear[0] - CIRCLE * math.sin(yaw), rear[1] + CIRCLE * math.cos(yaw))

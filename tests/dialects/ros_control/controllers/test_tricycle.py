@@ -38,9 +38,9 @@ def test_a_tricycle_of_one_driven_wheel(make, tmp_path):
     before = made.place[2]
     made.go(1.0, x=SPEED, turn=TURN)
     assert made.place[2] - before == pytest.approx(TURN, rel=0.06)
-    told = made.odometry("/base/odom")
-    assert told.twist.twist.linear.x == pytest.approx(SPEED, rel=0.03)
-    assert told.twist.twist.angular.z == pytest.approx(TURN, rel=0.03)
+    reported = made.odometry("/base/odom")
+    assert reported.twist.twist.linear.x == pytest.approx(SPEED, rel=0.03)
+    assert reported.twist.twist.angular.z == pytest.approx(TURN, rel=0.03)
 
 
 def test_a_tricycle_takes_plain_twists_where_that_is_set(make, tmp_path):
@@ -66,6 +66,6 @@ def test_an_axis_that_points_the_wrong_way_is_reported(make, tmp_path, monkeypat
         traction_joint_name="front_joint", steering_joint_name="front_steer",
         wheelbase=BASE, wheel_radius=RADIUS,
     )  # fmt: skip
-    (told,) = coded(made.world, robot.WHEEL_AXIS_MISALIGNED, axis="-z")
-    assert told.values["joint"] == "front_steer"
-    assert str(told.origin).startswith(str(tmp_path / "car.urdf"))
+    (reported,) = coded(made.world, robot.WHEEL_AXIS_MISALIGNED, axis="-z")
+    assert reported.values["joint"] == "front_steer"
+    assert str(reported.origin).startswith(str(tmp_path / "car.urdf"))
