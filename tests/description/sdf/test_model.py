@@ -676,8 +676,6 @@ ENDS = "<parent>a</parent><child>b</child>"
          "</visual></link>", "value-invalid"),
         ('<link name="a"><visual name="v"><geometry><mesh/></geometry></visual></link>',
          "tag-missing"),
-        ('<link name="a"><sensor name="s" type="imu"/><sensor name="s" type="imu"/></link>',
-         "name-taken"),
         ('<link name="a"/><plugin name="p"/>', "tag-missing"),
     ],
 )  # fmt: skip
@@ -842,6 +840,16 @@ def test_a_second_collision_of_a_name_gets_another():
     (reported,) = [each for each in found.diagnostics if each.code.name == "name-taken"]
     assert reported.severity == "warning"
     assert reported.values["renamed"] == "c_2"
+
+
+def test_a_link_may_have_two_sensors_with_the_same_name():
+    """As in worlds that Gazebo Classic saved: there, fixed joints merge links with sensors."""
+    sensor = '<sensor name="{}" type="{}"/>'.format
+    sensors = [sensor("s", "imu"), sensor("t", "imu"), sensor("s", "camera"), sensor("s", "imu")]
+    found = robot(f'<link name="a">{"".join(sensors)}</link><link name="b">{sensors[0]}</link>')
+    assert [each.type for each in found.links[0].sensors] == ["imu", "imu", "camera", "imu"]
+    told = [each for each in found.diagnostics if named(each) == "sensor-twice"]
+    assert {(each.severity, each.values["name"]) for each in told} == {("warning", "s")}
 
 
 def test_a_joint_to_a_missing_part_goes_with_it():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 from cartwheel.codes import tags as codes
 from cartwheel.codes.files import SDF_VERSION
 from cartwheel.description.elements.numbers import LARGEST, position
-from cartwheel.errors import Code, DescriptionError, Details, Diagnostic, Origin
+from cartwheel.errors import Code, Details, Diagnostic
 from cartwheel.geometry import Pose, Quat, quat_normalize
 from cartwheel.similar_names import meant, suggestion
 
@@ -169,18 +169,3 @@ def positive(node: Node, what: str) -> float:
     if value > LARGEST:
         raise node.fail(f"{what} must be at most {LARGEST:g} (got {node.text})")
     return value
-
-
-def check_unique(kind: str, names: list[tuple[str, Origin]]) -> None:
-    """Rejects duplicate names; the hint contains the location of the first."""
-    seen: dict[str, Origin] = {}
-    for name, origin in names:
-        if name in seen:
-            raise DescriptionError(
-                f'the {kind} "{name}" is defined twice',
-                code=codes.NAME_TAKEN,
-                origin=origin,
-                hint=f"The first definition is at {seen[name]}.",
-                values={"name": name},
-            )
-        seen[name] = origin

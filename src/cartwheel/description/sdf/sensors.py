@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 
-from cartwheel.codes.tags import TYPE_UNKNOWN
+from cartwheel.codes.tags import SENSOR_TWICE, TYPE_UNKNOWN
 from cartwheel.description.elements.numbers import LARGEST, within
 from cartwheel.description.elements.xml import Node, copied, to_element
 from cartwheel.description.losses import loss
@@ -98,6 +98,15 @@ def read_sensors(
             node.mark()
             report(loss(error, "the sensor is ignored", of="sensor", origin=error.origin))
     return sensors
+
+
+def sensor_twice(link: str, sensor: Sensor) -> Diagnostic:
+    """The warning about a second sensor with the same name, which Gazebo Classic accepts."""
+    return SENSOR_TWICE.diagnostic(
+        f'link "{link}" has two sensors named "{sensor.name}", which may publish on the same topic',
+        origin=sensor.origin,
+        values={"link": link, "name": sensor.name},
+    )
 
 
 def read_camera(node: Node) -> CameraIntrinsics:

@@ -15,7 +15,7 @@ from cartwheel.description.sdf.context import not_simulated, read_pose
 from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.links.material import read_material
 from cartwheel.description.sdf.links.surface import not_negative, read_surface
-from cartwheel.description.sdf.sensors import read_sensor, read_sensors
+from cartwheel.description.sdf.sensors import read_sensor, read_sensors, sensor_twice
 from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
@@ -161,13 +161,7 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     seen = {sensor.name for sensor in tags.sensors}
     for read in read_sensors(node.all("sensor"), lambda each: read_sensor(each, link), ctx.report):
         if read.name in seen:
-            ctx.warn(
-                codes.SENSOR_TWICE,
-                f'link "{link}" has two sensors named "{read.name}", which may publish on the '
-                "same topic",
-                origin=read.origin,
-                values={"link": link, "name": read.name},
-            )
+            ctx.report(sensor_twice(link, read))
         seen.add(read.name)
         tags.sensors.append(read)
     for light in node.all("light"):

@@ -22,7 +22,6 @@ from cartwheel.description.model import (
 )
 from cartwheel.description.sdf.context import (
     Context,
-    check_unique,
     not_simulated,
     read_pose,
     reference_of,
@@ -34,7 +33,7 @@ from cartwheel.description.sdf.links.inertia import WATER, inertial_of, weighing
 from cartwheel.description.sdf.links.material import read_material
 from cartwheel.description.sdf.links.shapes import read_shape
 from cartwheel.description.sdf.links.surface import read_surface
-from cartwheel.description.sdf.sensors import read_sensor, read_sensors
+from cartwheel.description.sdf.sensors import read_sensor, read_sensors, sensor_twice
 from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose, rotate
 
@@ -92,7 +91,11 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
     )
     visuals = named_apart("visual", visuals, ctx)
     collisions = named_apart("collision", collisions, ctx)
-    check_unique("sensor", [(s.name, s.origin) for s in sensors])
+    seen: set[str] = set()
+    for sensor in sensors:
+        if sensor.name in seen:
+            ctx.report(sensor_twice(name, sensor))
+        seen.add(sensor.name)
     for tag in _WITHOUT_COUNTERPART:
         for part in node.all(tag):
             part.mark()
