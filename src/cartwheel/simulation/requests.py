@@ -132,14 +132,18 @@ class Requests:
         return handle
 
     def joint(self, name: str, *, origin: Origin | None = None) -> JointHandle:
-        """A handle to a movable joint of this model.
+        """A handle to a movable joint of this model, or to the first axis of a universal joint.
 
         Raises:
             UnknownNameError: The joint does not exist; the error has this `origin`.
             StaticModelError: The model is static.
         """
         _require_name(name, "joint")
-        movable = [joint.name for joint in self.description.joints if joint.drivable]
+        movable = [
+            joint.name
+            for joint in self.description.joints
+            if joint.drivable or joint.type == "universal"
+        ]
         if self.description.static:
             raise StaticModelError(
                 f'model "{self.name}" is static, so its joints do not move',

@@ -18,7 +18,7 @@ from tests.devices.drives.carts import (
 )
 
 from cartwheel.codes import devices
-from cartwheel.description.model import Mesh
+from cartwheel.description.model import Axis, Mesh
 from cartwheel.devices.drives.drive import Drives
 from cartwheel.geometry import Pose
 
@@ -47,6 +47,30 @@ def test_car_circles_about_one_point(make, cart, read):
     ways = [message.data for message in extra["/distance"].drain()]
     assert ways[-1] - ways[0] == pytest.approx(speed * 7.99, rel=0.03)
     assert coded(world, devices.PLUGIN_PARAMETER_IGNORED)
+
+
+def test_a_universal_joint_steers_about_its_first_axis_and_rolls_about_its_second(make, cart, read):
+    """As for cars of Gazebo Classic whose front wheels have no forks."""
+    speed, angle, base, track = 0.6, 0.4, 0.4, 0.3
+    car = cart(CAR, ackermann().replace("_steering<", "_joint<"))
+    front = [f"{name}_joint" for name in FRONT]
+    joints = [
+        # The wheel's frame is turned by -90 degrees about x.
+        replace(joint, type="universal", axis=Axis(xyz=(0, -1, 0)), axis2=Axis(xyz=(0, 0, 1)))
+        if joint.name in front
+        else joint
+        for joint in car.joints
+    ]
+    world = spawn(make, replace(car, joints=tuple(joints)))
+    world.publish("/cmd_vel", linear_x=speed, angular_z=angle)
+    world.run(2.0)
+    steered = world.mailbox("/steerangle", size=10_000)
+    radius = base / math.tan(angle)
+    assert circle(path(read(world, "/odom", 8.0))) == pytest.approx(radius, rel=0.03)
+    angles = [message.data for message in steered.drain()]
+    left = math.atan2(base, radius - track / 2)
+    right = math.atan2(base, radius + track / 2)
+    assert angles[-1] == pytest.approx((left + right) / 2, abs=0.01)
 
 
 def test_car_in_reverse_turns_the_way_it_is_commanded(make, cart, read):
