@@ -16,13 +16,17 @@ JOINT = (
 )
 
 
-def robot(*turning):
+DRIVE = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+  <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint></plugin></gazebo>"""
+
+
+def robot(*turning, tags=""):
     """A box with links that turn: name, place of the joint, and axis."""
     text = LINK.format(name="base", shape='<box size="0.4 0.4 0.1"/>')
     for name, at, axis in turning:
         text += LINK.format(name=name, shape='<sphere radius="0.05"/>')
         text += JOINT.format(name=name, at=at, axis=axis)
-    return Robot(load_text(f'<robot name="robot">{text}</robot>'), None)
+    return Robot(load_text(f'<robot name="robot">{text}{tags}</robot>'), None)
 
 
 LIDAR = ("lidar", "0 0 0.3", "1 0 0")
@@ -38,6 +42,15 @@ def test_a_base_drives_along_its_wheels_also_if_they_roll_along_y():
     left, right = (("left", "0.2 0 -0.05", "1 0 0"), ("right", "-0.2 0 -0.05", "1 0 0"))
     x, y = heading(robot(left, right), {"left_joint": 2.0, "right_joint": 2.0})
     assert (x, abs(y)) == pytest.approx((0.0, 1.0))
+
+
+def test_a_caster_that_rolls_to_the_side_does_not_change_where_the_driven_wheels_roll():
+    """A robot that faces along y, with a caster of one axis, along y, that sliding turns."""
+    wheels = (("left", "-0.2 0 -0.05", "1 0 0"), ("right", "0.2 0 -0.05", "1 0 0"))
+    caster = ("caster", "0 -0.2 -0.05", "0 1 0")
+    speeds = {"left_joint": 2.0, "right_joint": 2.0, "caster_joint": 5.0}
+    assert heading(robot(*wheels, caster, tags=DRIVE), speeds) == pytest.approx((0.0, 1.0))
+    assert heading(robot(*wheels, caster), speeds) == pytest.approx(FORWARD)
 
 
 def test_mirrored_wheels_roll_in_one_direction():

@@ -27,13 +27,17 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
 
     It points toward +x, or, for wheels with an axis along x, away from the side on which the left
     wheel would be on the right, or, if that is unknown, in the direction in which the wheels roll.
-    Without parallel wheels on the ground it is x, as in REP 103.
+    The driven wheels count before those that only roll, such as a caster. Without parallel wheels
+    on the ground it is x, as in REP 103.
 
     Args:
         robot: The robot.
         speeds: Speeds of the joints while the robot drove forward, rad/s, by name.
     """
-    axle = _axle(_axes(robot, [name for name, speed in speeds.items() if abs(speed) >= _ROLLS]))
+    rolled = [name for name, speed in speeds.items() if abs(speed) >= _ROLLS]
+    driven = {name for sides in robot.sides for side in sides for name in side}
+    axle = _axle(_axes(robot, [name for name in rolled if name in driven]))
+    axle = axle or _axle(_axes(robot, rolled))
     if axle is None:
         return FORWARD
     forward = (axle[1], -axle[0])
