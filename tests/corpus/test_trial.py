@@ -16,7 +16,6 @@ from cartwheel.codes.devices import (
     CONTROLLER_GAINS_MISSING,
     CONTROLLER_UNDAMPED,
     CONTROLLERS_NOT_FOUND,
-    PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
 )
 from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, LINK_RECONNECTED
@@ -373,15 +372,16 @@ def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tr
     assert {fault.source for fault in faults} == {"unknown"}
 
 
-def test_the_legacy_mode_explains_a_turn_to_the_wrong_side(tried):
+def test_the_legacy_mode_reverses_only_swapped_wheels(tried):
+    """Old releases of Gazebo reverse them, Gazebo 11 does not."""
     legacy = cart(0.1).replace("<legacyMode>false", "<legacyMode>true")
-    verdict = tried(legacy)
-    (fault,) = verdict.faults
-    assert (fault.test, fault.code) == ("turn", PLUGIN_PARAMETER_OBSOLETE)
-    # With swapped wheels, the robot turns as commanded.
+    assert (verdict := tried(legacy)).good, verdict.faults
     swapped = legacy.replace("left_joint</", "x</").replace("right_joint</", "left_joint</")
-    verdict = tried(swapped.replace("x</", "right_joint</"))
-    assert verdict.good, verdict.faults
+    assert (verdict := tried(swapped.replace("x</", "right_joint</"))).good, verdict.faults
+    (fault,) = tried(
+        swapped.replace("x</", "right_joint</").replace("Mode>true", "Mode>false")
+    ).faults
+    assert (fault.test, fault.code) == ("turn", WHEELS_SWAPPED)
 
 
 def test_a_vehicle_without_known_sides_faces_where_its_wheels_roll(tmp_path, tried):

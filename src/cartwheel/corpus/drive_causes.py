@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from cartwheel.codes import devices, robot, running
+from cartwheel.codes import robot, running
 from cartwheel.corpus.faults import most_severe
 from cartwheel.corpus.movers import reports
 from cartwheel.description.model import RobotDescription
@@ -95,14 +95,9 @@ def _cause(
     if skids is not None and abs(ratio) < slowest <= _STUCK:
         return skids
     product = math.prod(factor for _, factor in factors.values())
-    legacy = next((each for each in found if _reverses(each)), None) if turning else None
-    for sign, cause in ((1.0, None), (-1.0, legacy)):
-        if sign < 0 and cause is None:
-            continue
-        for each, factor in (*factors.values(), (cause, 1.0)):
-            ratios = (sign * factor, sign * product)
-            if each is not None and any(_follows(ratio, e) for e in ratios):
-                return each
+    for each, factor in factors.values():
+        if _follows(ratio, factor) or _follows(ratio, product):
+            return each
     if arc and factors:
         # Steering and rim speeds contradict each other, so the wheels slide.
         expected = [1.0, *(factor for _, factor in factors.values())]
@@ -180,14 +175,6 @@ def is_free(said: Iterable[Diagnostic], topic: str) -> bool:
     return any(
         each.code is robot.WHEEL_FRICTIONLESS and each.values.get("controller") in names
         for each in said
-    )
-
-
-def _reverses(finding: Diagnostic) -> bool:
-    """Whether it reports ``<legacyMode>``, which reverses the turning direction."""
-    return (
-        finding.code is devices.PLUGIN_PARAMETER_OBSOLETE
-        and finding.values.get("tag") == "legacyMode"
     )
 
 

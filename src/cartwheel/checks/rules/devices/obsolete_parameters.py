@@ -7,13 +7,19 @@ from collections.abc import Iterator
 from cartwheel.checks import edits, nodes, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import is_legacy
+from cartwheel.checks.wheels import is_legacy, wheel_pairs
 from cartwheel.codes import devices as devices_codes
+from cartwheel.dialects.wheel_pairs import are_swapped
 from cartwheel.errors import Diagnostic
 
 
 @rule(devices_codes.PLUGIN_PARAMETER_OBSOLETE)
 def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
+    legacy_swapped = [
+        drive
+        for robot, drive, left, right in wheel_pairs(subject)
+        if is_legacy(drive) and are_swapped(robot.description, left.name, right.name)
+    ]
     for robot in subject.robots:
         for drive in robot.drives:
             element = drive.tag.element
@@ -32,10 +38,16 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                     )
             legacy = element.find("legacyMode")
             if legacy is not None and is_legacy(drive):
+                swapped = any(drive is each for each in legacy_swapped)
+                message = (
+                    "Gazebo 11 ignores <legacyMode>, so the robot turns in the opposite direction"
+                    if swapped
+                    else "Gazebo 11 ignores <legacyMode>, and so does Cartwheel, because the "
+                    "wheels are on the sides that the tags state"
+                )
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message="Gazebo 11 ignores <legacyMode>, so the robot turns in the opposite "
-                    "direction",
+                    message=message,
                     values={"tag": "legacyMode", "plugin": drive.tag.name},
                     **edits.whole(legacy, "<legacyMode>false</legacyMode>"),
-                    hint="Swap the names of the two joints.",
+                    hint="Swap the names of the two joints." if swapped else "",
                 )

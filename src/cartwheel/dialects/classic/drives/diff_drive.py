@@ -16,7 +16,7 @@ from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
-from cartwheel.dialects.wheel_pairs import add_differential_drive, wheel_pairs
+from cartwheel.dialects.wheel_pairs import add_differential_drive, are_swapped, wheel_pairs
 from cartwheel.errors import PluginError
 
 _TORQUE = 5.0
@@ -129,7 +129,8 @@ class DiffDriveParameters:
     legacy_mode: bool = tag(
         "legacyMode",
         default=False,
-        doc="Whether to reverse the turning direction, as in old releases of Gazebo's plugin.",
+        doc="Whether old releases of Gazebo's plugin reverse the turning direction. It has an "
+        "effect only if the names of the wheels are swapped, so that the robot turns as commanded.",
     )
 
 
@@ -196,7 +197,7 @@ class DiffDrive(Plugin[DiffDriveParameters]):
                 pairs=pairs,
                 max_torque=torque,
                 acceleration=config.wheel_acceleration,
-                reverse=config.legacy_mode,
+                reverse=config.legacy_mode and self._is_swapped(pairs),
                 odometry="positions" if encoder else "ground truth",
                 drive=DriveConfig(
                     command_topic=config.command_topic,
@@ -206,6 +207,13 @@ class DiffDrive(Plugin[DiffDriveParameters]):
                 ),
             ),
         )
+
+    def _is_swapped(self, pairs: tuple[WheelPair, ...]) -> bool:
+        """Whether the robot was written for an old release, which swapped the wheels itself.
+
+        Gazebo 11 does not, so robots that were written for it may also have the tag.
+        """
+        return any(are_swapped(self.part.description, each.left, each.right) for each in pairs)
 
     def _wheel_pairs(self) -> tuple[WheelPair, ...]:
         config = self.config
