@@ -463,6 +463,13 @@ class Joint:
         return self.type in ("revolute", "continuous", "prismatic")
 
     @property
+    def has_first_axis(self) -> bool:
+        """Whether plugins can drive and measure its axis, or the first axis of a universal joint,
+        as in Gazebo.
+        """
+        return self.drivable or self.type == "universal"
+
+    @property
     def turns(self) -> bool:
         """Whether it turns like a wheel: without limits, or with limits many turns away."""
         if self.type == "continuous":

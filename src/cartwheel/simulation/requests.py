@@ -139,11 +139,7 @@ class Requests:
             StaticModelError: The model is static.
         """
         _require_name(name, "joint")
-        movable = [
-            joint.name
-            for joint in self.description.joints
-            if joint.drivable or joint.type == "universal"
-        ]
+        movable = [joint.name for joint in self.description.joints if joint.has_first_axis]
         if self.description.static:
             raise StaticModelError(
                 f'model "{self.name}" is static, so its joints do not move',

@@ -68,6 +68,20 @@ def test_a_fixed_joint_is_reported(make, read):
     assert coded(world, running.JOINT_WITHOUT_STATE, joint="wrist")
 
 
+@pytest.mark.parametrize("tags", ["<jointName>turn,wrist</jointName>", ""])
+def test_the_state_of_a_universal_joint_is_that_of_its_first_axis(make, read, tags):
+    world = make.world(make.sdf(arm(joint_states(tags), "universal")), ground=None)
+    world.session.simulation.data.joint("arm::wrist").qvel[0] = 1.0
+    last = read(world, "/arm/joint_states", 0.1)[-1]
+    assert sorted(last.name) == ["turn", "wrist"]
+    wrist = world.session.simulation.data.joint("arm::wrist")
+    index = last.name.index("wrist")
+    assert last.position[index] == pytest.approx(wrist.qpos[0], abs=1e-9)
+    assert last.velocity[index] == pytest.approx(wrist.qvel[0], abs=1e-9)
+    assert abs(last.position[index]) > 0.01
+    assert not coded(world, running.JOINT_WITHOUT_STATE, joint="wrist")
+
+
 def test_a_joint_that_has_no_single_position_is_reported_and_the_others_are_published(make, read):
     plugin = joint_states("<jointName>turn,wrist</jointName>")
     world = make.world(make.sdf(arm(plugin, "ball")), ground=None)

@@ -17,11 +17,11 @@ def _joints(plugin: Plugin[Any], names: list[str]) -> tuple[str, ...]:
     """Returns the joints in the tag, or all movable joints if the tag is empty."""
     description = plugin.part.description
     if not names:
-        names = [joint.name for joint in description.joints if joint.drivable]
+        names = [joint.name for joint in description.joints if joint.has_first_axis]
     moving = []
     for name in names:
         joint = description.joint(name)
-        if joint is not None and not joint.drivable:
+        if joint is not None and not joint.has_first_axis:
             fixed = joint.type == "fixed"
             kind = "is fixed" if fixed else f"has the type {joint.type}"
             plugin.warn(
