@@ -351,8 +351,10 @@ def test_a_wrong_separation_is_why_a_robot_with_sliding_wheels_turns_too_fast():
     assert cause_of_drive([slow, apart], 0.7, turning=True) is slow
 
 
-def test_wheels_that_slide_explain_why_a_robot_that_should_hardly_turn_does_not_turn():
-    skids = SKID_STEERING.diagnostic("slide", values={"ratio": 0.04, "stated": 0.4, "rolling": 1.0})
+@pytest.mark.parametrize("predicted", [0.04, 1e-6, 0.0])
+def test_wheels_that_slide_explain_why_a_robot_that_should_hardly_turn_does_not_turn(predicted):
+    values = {"ratio": predicted, "stated": 0.4, "rolling": 1.0}
+    skids = SKID_STEERING.diagnostic("slide", values=values)
     assert cause_of_drive([skids], -0.01, turning=True) is skids
     assert cause_of_drive([skids], -0.5, turning=True) is None
 

@@ -84,7 +84,11 @@ def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
 def _cause(
     found: Sequence[Diagnostic], ratio: float, *, turning: bool, arc: bool
 ) -> Diagnostic | None:
-    factors = {each.code: (each, factor) for each in found if (factor := _factor(each, turning))}
+    factors = {
+        each.code: (each, factor)
+        for each in found
+        if (factor := _factor(each, turning)) is not None
+    }
     if robot.SKID_STEERING in factors:
         # Its ratio contains the stated separation.
         factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
@@ -92,7 +96,8 @@ def _cause(
     if skids is not None and slowest < ratio < max(1.0, _rolling(skids)):
         # Fewer wheels than predicted carry the robot, or the friction depends on the direction.
         return skids
-    if skids is not None and abs(ratio) < slowest <= _STUCK:
+    if skids is not None and slowest <= _STUCK and abs(ratio) < max(slowest, _DIFFERS):
+        # The predicted part may be exactly 0.
         return skids
     product = math.prod(factor for _, factor in factors.values())
     for each, factor in factors.values():
