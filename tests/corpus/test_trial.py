@@ -18,7 +18,7 @@ from cartwheel.codes.devices import (
     CONTROLLERS_NOT_FOUND,
     PLUGIN_UNKNOWN,
 )
-from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, LINK_RECONNECTED
+from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK, INCLUDE_ABSENT, LINK_RECONNECTED
 from cartwheel.codes.robot import (
     BODY_ON_GROUND,
     DAMPING_TOO_HIGH,
@@ -215,8 +215,9 @@ def test_a_wrong_radius_also_explains_how_fast_sliding_wheels_turn_the_base():
     assert _explained(radius, drives=(right,)) == {"turn": None}
 
 
-def test_a_robot_that_fell_cannot_drive():
-    lost = FILE_MISSING.diagnostic("no mesh", values={"left_out": "collision"})
+@pytest.mark.parametrize("code", [FILE_MISSING, FILE_ON_NETWORK])
+def test_a_robot_that_fell_cannot_drive(code):
+    lost = code.diagnostic("no mesh", values={"left_out": "collision"})
     fell = Stand(fixed=False, simulated=10, wall=1, sunk=0.1, tilt=0.5, speed=0, turn=0)
     drive = Drive(
         topic="/cmd_vel", commanded=0.2, measured=0.1, commanded_turn=0.4, measured_turn=0.1

@@ -249,7 +249,7 @@ def _is_started(controller: str, verdict: Verdict) -> bool:
 
 
 def _explains_fall(each: Diagnostic) -> bool:
-    if each.code in (files.FILE_MISSING, files.MESH_UNREADABLE):
+    if each.code in (files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREADABLE):
         return each.values.get("left_out") == "collision"
     return each.code in _STANDING
 
