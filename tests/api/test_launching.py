@@ -172,9 +172,19 @@ def test_a_published_model_that_the_world_contains_is_not_spawned(package: Path)
         assert world.models == ("ground_plane", "pillar")
 
 
+def test_a_model_whose_name_is_taken_is_not_spawned(package: Path) -> None:
+    with cw.launch(package / "launch/twins.launch") as world:
+        assert world.models == ("pillar", "left")
+        assert world.model("left").pose.y == pytest.approx(2.0)
+        assert [each.values for each in coded(world, MODEL_NAME_TAKEN)] == [{"name": "left"}]
+    text = TWO.replace("-model left", "-model pillar").replace("NAME", "right")
+    (package / "launch/two.launch").write_text(text)
+    with cw.launch(package / "launch/two.launch") as world:
+        assert world.models == ("pillar", "right")
+        assert coded(world, MODEL_NAME_TAKEN)
+
+
 def test_errors_of_a_launch_file(package: Path) -> None:
-    with raises(MODEL_NAME_TAKEN):
-        cw.launch(package / "launch/twins.launch")
     with raises(NOT_A_DESCRIPTION):
         cw.launch(package / "urdf/cart.xacro")
     with raises(NOT_A_DESCRIPTION):

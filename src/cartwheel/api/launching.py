@@ -39,7 +39,7 @@ def launch(
     Raises:
         DescriptionError: A description cannot be used, the launch file names none that exists, or
             it does not declare an argument (CW123).
-        WorldError: A model cannot be built, or two have the same name.
+        WorldError: A model cannot be built.
         CartwheelError: An option is invalid.
     """
     from cartwheel.assembly.launched import open_launch, spawn_all

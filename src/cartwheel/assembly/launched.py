@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from cartwheel.codes import files as codes
+from cartwheel.codes.world import MODEL_NAME_TAKEN
 from cartwheel.control.place import placed
 from cartwheel.description import load_robot, load_world
 from cartwheel.description.files.named_files import bundled_worlds
@@ -78,17 +79,32 @@ def open_launch(
     opened = load_world(world, package_path=package_path) if world else None
     opened = opened or _world(start, package_path, found)
     names = {each.name for each in opened.models}
-    models = [(each, _start(each, package_path)) for each in start.models]
+    models = []
+    for each in start.models:
+        model = _start(each, package_path)
+        name = model.name or model.description.name
+        if name not in names:
+            names.add(name)
+            models.append(model)
+        elif not each.is_shown:
+            found.append(_refused(start.file, name))
     return Launched(
         world=opened,
-        models=tuple(
-            model
-            for each, model in models
-            if not (each.is_shown and model.description.name in names)
-        ),
+        models=tuple(models),
         bridges=start.bridges,
         file=file,
         diagnostics=tuple(found),
+    )
+
+
+def _refused(file: Path, name: str) -> Diagnostic:
+    """What Gazebo does with a model whose name another one has."""
+    return MODEL_NAME_TAKEN.diagnostic(
+        f'a model named "{name}" is already in the world, so another one is not spawned, as in '
+        "Gazebo",
+        severity="warning",
+        origin=Origin(file=str(file)),
+        values={"name": name},
     )
 
 
