@@ -867,8 +867,35 @@ def test_a_manager_without_controllers_is_a_fault(tried):
     verdict = tried(ARM.format(kind="Position"))
     (fault,) = verdict.faults
     assert (fault.test, fault.code) == ("controller", CONTROLLERS_NOT_FOUND)
+    assert fault.reason.values["started"] == ()
     assert verdict.should_move
     assert not verdict.moves
+
+
+def test_a_launch_file_that_only_starts_a_publisher_is_named(tmp_path):
+    """Other controllers are in a file, but nothing starts them."""
+    publisher = "states: {type: joint_state_controller/JointStateController, publish_rate: 50}"
+    mover = "mover: {type: position_controllers/JointPositionController, joint: shoulder}"
+    for path, text in {
+        "package.xml": "<package><name>arm</name></package>",
+        "config/states.yaml": publisher,
+        "config/mover.yaml": mover,
+        "urdf/robot.urdf": f'<robot name="robot">{ARM.format(kind="Position")}</robot>',
+        "launch/a.launch": """<launch>
+          <param name="robot_description" textfile="$(find arm)/urdf/robot.urdf"/>
+          <node name="m" pkg="gazebo_ros" type="spawn_model"
+            args="-urdf -param robot_description -model r"/>
+          <rosparam file="$(find arm)/config/states.yaml" command="load"/>
+          <node name="s" pkg="controller_manager" type="spawner" args="states"/></launch>""",
+    }.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text)
+    launches = launches_near(tmp_path)
+    verdict = try_robot(tmp_path / "urdf/robot.urdf", standing=2.0, launches=launches)
+    assert verdict.controllers == ("states",)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code) == ("controller", CONTROLLERS_NOT_FOUND)
+    assert fault.reason.values["started"] == ("states",)
 
 
 @pytest.mark.parametrize("kind", ["velocity", "effort"])

@@ -153,11 +153,21 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
             each for each in said if each.code in _CONTROL and _concerns(each, tag)
         )
         if reason is None and not undefined:
-            reason = devices.CONTROLLERS_NOT_FOUND.diagnostic(
-                "no file contains controllers for this controller manager", origin=tag.origin
-            )
+            reason = _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _uncommanded(verdict: Verdict, tag: PluginTag) -> Diagnostic:
+    """Why no controller of a manager commands a joint."""
+    started = tuple(name for name in verdict.spawned if name in verdict.controllers)
+    message = "no file contains controllers for this controller manager"
+    if started and verdict.launch is not None:
+        names = ", ".join(f'"{name}"' for name in started)
+        message = f'"{verdict.launch.file.name}" starts only {names}, which commands no joint'
+    return devices.CONTROLLERS_NOT_FOUND.diagnostic(
+        message, origin=tag.origin, values={"started": started}
+    )
 
 
 def _contains(each: Diagnostic, controller: str) -> bool:
