@@ -129,8 +129,10 @@ class Process:
         except (EOFError, OSError):
             self._process.join(_END)
             status = self._process.exitcode
+            # It ends by itself when this end is closed.
+            why = f"with status {status}" if status else "because an earlier call was interrupted"
             raise CartwheelError(
-                f"a process of the batch ended with status {status}",
+                f"a process of the batch ended {why}",
                 code=BATCH_PROCESS_ENDED,
                 values={"status": str(status)},
             ) from None
