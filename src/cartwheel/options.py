@@ -67,6 +67,7 @@ class Option:
 RECORD = Option(flag="--record", parameter="record")
 OVERWRITE = Option(flag="--overwrite", parameter="overwrite")
 STRICT = Option(flag="--strict", parameter="strict")
+WORLD = Option(flag="--world", parameter="world")
 NAME = Option(flag="--model", parameter="name")
 HOST = Option(flag="--host", parameter="host")
 ALLOW_ORIGIN = Option(flag="--allow-origin", parameter="allow_origin")

@@ -155,6 +155,8 @@ def test_another_world_and_arguments(package: Path) -> None:
         assert "left" in world.models
     with cw.launch(file, {"arena": "worlds/mud.world"}) as world:
         assert not coded(world, LAUNCH_WORLD_ABSENT)
+    with raises(LAUNCH_WORLD_ABSENT):
+        cw.launch(file, {"arena": "worlds/willow.world"}, strict=True)
     with raises(ARGUMENT_UNKNOWN):
         cw.launch(file, {"aerna": "mud"})
 

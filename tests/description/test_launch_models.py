@@ -199,3 +199,29 @@ def test_a_file_at_another_place_is_spawned(bot: Path) -> None:
     """The file of a model is found in the package, as that of robot_description is."""
     text = spawner("a").replace('FindPackageShare("bot")', '"/opt/ws/src/bot"')
     assert started(read_launch(written(bot, "a.launch.py", text), {})) == [("a", "other.urdf", "")]
+
+
+@pytest.mark.parametrize("group", ["", "one"])
+def test_a_robot_whose_description_is_absent_is_not_replaced_by_another(
+    bot: Path, group: str
+) -> None:
+    """A misspelt file, or a package that is not found, would otherwise be the crate."""
+    for stated in ("$(find bot)/urdf/bott.xacro", "$(find other_bot)/urdf/robot.xacro"):
+        text = f"""<launch>
+          <node pkg="gazebo_ros" type="spawn_model" name="a"
+            args="-urdf -file $(find bot)/urdf/other.urdf -model crate"/>
+          <group ns="{group}"><param name="robot_description" command="xacro {stated}"/>
+          <node pkg="gazebo_ros" type="spawn_model" name="b"
+            args="-urdf -param robot_description -model robot"/></group></launch>"""
+        start = read_launch(written(bot, "a.launch", text), {})
+        assert [each.spawn.name for each in start.models] == ["crate"]
+        (found,) = start.diagnostics
+        assert found.values == {"what": "model", "name": "robot"}
+        assert ("bott.xacro" if "bott" in stated else 'package "other_bot"') in found.hint
+
+
+def test_a_missing_configuration_of_the_bridge_is_reported(bot: Path) -> None:
+    text = f'xacro.process_file("{bot}/urdf/bot.xacro")\n'
+    text += 'RosGzBridge(bridge_name="b", config_file="/absent/bridge.yaml")\n'
+    (found,) = read_launch(written(bot, "a.launch.py", text), {}).diagnostics
+    assert found.values == {"what": "bridge", "name": "/absent/bridge.yaml"}

@@ -16,6 +16,7 @@ from cartwheel.description.launches import LaunchedModel, LaunchStart, LaunchUse
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
+from cartwheel.options import WORLD
 
 if TYPE_CHECKING:
     from cartwheel.session import Session
@@ -117,7 +118,9 @@ def spawn_all(session: Session, launched: Launched, package_path: Sequence[Path]
         package_path: Folders to search for packages first.
     """
     with session.spawning():
-        names = [
+        for each in launched.diagnostics:
+            session.simulation.engine.report(each)
+        return [
             session.spawn(
                 each.description,
                 name=each.name,
@@ -128,9 +131,6 @@ def spawn_all(session: Session, launched: Launched, package_path: Sequence[Path]
             )
             for each in launched.models
         ]
-    for each in launched.diagnostics:
-        session.simulation.engine.report(each)
-    return names
 
 
 def _world(
@@ -151,7 +151,7 @@ def _world(
                 f'the world "{stated}" was not found, and the empty world is used',
                 origin=Origin(file=str(start.file)),
                 values={"name": stated},
-                hint="Pass a world with --world.",
+                hint=f"Pass a world: {WORLD.given('FILE')}.",
             )
         )
     return load_world(name)

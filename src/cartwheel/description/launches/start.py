@@ -15,10 +15,13 @@ from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.search import facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
-from cartwheel.description.launches.use import Facts, LaunchUse
+from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.options import PACKAGE_PATH, WORLD
 from cartwheel.similar_names import meant, suggestion
 
+_SHOWN = 4
+"""Maximum number of missing files and packages in a hint."""
 _ENDS = (".launch", ".launch.xml", ".py")
 _PARTS = {"place": "a part of the pose", "name": "the name", "namespace": "the namespace"}
 """What may be unknown of a model."""
@@ -96,6 +99,7 @@ def read_launch(
         required = sorted(facts.declared - {*facts.defaults, *arguments})
         named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
         named += f"Without a value: {', '.join(required)}. " if required else ""
+        named += _not_found(facts)
         raise _failure(file, "the launch file names no description that exists", named)
     world = facts.world
     if not world and file.suffix == ".py":
@@ -116,7 +120,9 @@ def _unknown(
 ) -> Iterator[Diagnostic]:
     """What only the execution of a launch file determines."""
     if UNKNOWN in world:
-        yield _lost(file, "the world is unknown", "Pass it with --world.", what="world")
+        yield _lost(
+            file, "the world is unknown", f"Pass a world: {WORLD.given('FILE')}.", what="world"
+        )
     count = max(each.use.unknown for each in models)
     if count:
         yield _lost(
@@ -128,6 +134,13 @@ def _unknown(
     for what, text in _PARTS.items():
         if any(what in each.spawn.unknown for each in models):
             yield _lost(file, f"{text} of a model is unknown", what=what)
+    for name in facts.lost_bridges:
+        yield _lost(
+            file,
+            f'"{name}", which renames topics for ros_gz_bridge, was not found',
+            what="bridge",
+            name=name,
+        )
     used = [each.spawn for each in models]
     for spawn in facts.spawns:
         if spawn not in used:
@@ -135,9 +148,21 @@ def _unknown(
             yield _lost(
                 file,
                 f"{shown} is not spawned, because its description is unknown or does not exist",
+                _not_found(facts).strip(),
                 what="model",
                 name=spawn.name,
             )
+
+
+def _not_found(facts: Facts) -> str:
+    """What was not found, as a hint; empty if nothing is missing."""
+    if not facts.absent:
+        return ""
+    shown = "; ".join(facts.absent[:_SHOWN])
+    advice = ""
+    if any(each.startswith("package") for each in facts.absent):
+        advice = f"Pass the folders of packages: {PACKAGE_PATH.given('FOLDER')}. "
+    return f"Not found: {shown}. {advice}"
 
 
 def _lost(file: Path, text: str, hint: str = "", **values: str) -> Diagnostic:
@@ -158,7 +183,11 @@ def _models(facts: Facts, uses: Sequence[LaunchUse]) -> list[LaunchedModel]:
         number = spawn.described
         if number is None and spawn.file is None and others:
             number = facts.published.get(spawn.source, others[0])
-        if number is not None and (file := (use := uses[number]).description) is not None:
+        if (
+            number is not None
+            and number != ABSENT
+            and (file := (use := uses[number]).description) is not None
+        ):
             shown = not facts.spawns
             found.append(LaunchedModel(description=file, use=use, spawn=spawn, is_shown=shown))
     return found

@@ -27,6 +27,10 @@ from cartwheel.description.launches.spawning import (
 )
 from cartwheel.errors import CartwheelError
 
+ABSENT = -1
+"""The number of a description that was not found."""
+_GAZEBO = frozenset({"gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "xacro"})
+"""Packages of which nothing is needed."""
 _LOOK = 100
 """Steps of a look at a file or folder."""
 DEEPEST = 6
@@ -113,8 +117,11 @@ class Facts:
     effort: Effort
     """The remaining effort."""
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
+    absent: list[str] = field(default_factory=list)
+    """Files and packages that are stated, but were not found."""
     published: dict[str, int] = field(default_factory=dict)
-    """The number of a description, by the parameter or topic that contains it."""
+    """The number of a description, by the parameter or topic that contains it; `ABSENT` if it was
+    not found."""
     namespace: str = ""
     """The namespace of the group that is being read."""
     yamls: list[Path] = field(default_factory=list)
@@ -125,6 +132,8 @@ class Facts:
     """The world as it is stated; empty if none is."""
     bridges: list[Path] = field(default_factory=list)
     """Configuration files of ros_gz_bridge."""
+    lost_bridges: list[str] = field(default_factory=list)
+    """Those that were not found."""
     declared: set[str] = field(default_factory=set)
     """Names of the arguments of the launch file itself that can be set."""
     count: int = 0
@@ -136,6 +145,8 @@ class Facts:
         """The folder of a package as text, with an unknown part if it is not found."""
         self.effort.search(name.strip())
         folder = self.find(name.strip()) if UNKNOWN not in name else None
+        if folder is None and UNKNOWN not in name and name.strip() not in _GAZEBO:
+            self._lack(f'package "{name.strip()}"')
         folder = folder or self.home
         return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
 
@@ -177,11 +188,14 @@ class Facts:
         of the files with such a name.
 
         Returns:
-            Its number in `descriptions`, that of the first if there are several; None without one.
+            Its number in `descriptions`, that of the first if there are several; None if no file
+            is stated; `ABSENT` if the file was not found.
         """
         self.effort.spend(_LOOK)
-        if file is None or UNKNOWN in str(file.parent):
+        if file is None:
             return None
+        if UNKNOWN in str(file.parent):
+            return ABSENT
         number = len(self.descriptions)
         if UNKNOWN not in file.name:
             file = self._here(file)
@@ -190,17 +204,27 @@ class Facts:
         elif re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")):
             known = {**arguments, "": UNKNOWN}
             self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
-        return number if len(self.descriptions) > number else None
+        if len(self.descriptions) > number:
+            return number
+        self._lack(f'file "{file}"'.replace(UNKNOWN, "…"))
+        return ABSENT
+
+    def _lack(self, what: str) -> None:
+        if what not in self.absent:
+            self.absent.append(what)
 
     def store_parameter(self, name: str, number: int | None) -> None:
         """Stores which description a parameter contains; the last one counts."""
-        if number is not None:
-            self.published[resolved(self.namespace, name)] = number
+        key = resolved(self.namespace, name)
+        if number is not None and (number != ABSENT or key not in self.published):
+            self.published[key] = number
 
     def store_topic(self, space: str, number: int | None) -> None:
         """Stores which description a robot_state_publisher publishes; the first one counts."""
         if number is not None:
-            self.published.setdefault(resolved(space, "robot_description"), number)
+            key = resolved(space, "robot_description")
+            if self.published.get(key, ABSENT) == ABSENT:
+                self.published[key] = number
 
     def _here(self, file: Path) -> Path:
         """A file where it is in the sources, although the launch file names another place.
@@ -266,7 +290,9 @@ class Facts:
         """Adds a configuration file of ros_gz_bridge if it exists."""
         self.effort.spend(_LOOK)
         path = Path(text.strip())
-        if UNKNOWN not in text and is_file(path) and path not in self.bridges:
+        if UNKNOWN in text or not is_file(path):
+            self.lost_bridges.append(text.strip().replace(UNKNOWN, "…"))
+        elif path not in self.bridges:
             self.bridges.append(path)
 
     def command(self, words: list[str]) -> None:
