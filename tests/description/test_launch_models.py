@@ -201,6 +201,7 @@ def test_a_file_at_another_place_is_spawned(bot: Path) -> None:
     assert started(read_launch(written(bot, "a.launch.py", text), {})) == [("a", "other.urdf", "")]
 
 
+@pytest.mark.wording
 @pytest.mark.parametrize("group", ["", "one"])
 def test_a_robot_whose_description_is_absent_is_not_replaced_by_another(
     bot: Path, group: str
