@@ -181,13 +181,21 @@ def test_a_controller_that_only_a_launch_file_names_is_reported(model, tmp_path,
     assert [(each.subject, each.code) for each in verdict.faults] == [("bad", CONTROLLER_UNDEFINED)]
 
 
-def test_a_controller_whose_parameters_are_in_a_launch_file_is_not_reported(model, tmp_path):
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        "<rosparam>bad: {}</rosparam>",
+        '<rosparam file="$(find arm)/config/one.yaml" ns="bad"/>',
+        '<rosparam file="$(find arm)/config/absent.yaml" ns="arm/bad"/>',
+    ],
+)
+def test_a_controller_whose_parameters_a_launch_file_names_is_not_reported(
+    model, tmp_path, parameters
+):
     held = beam("beam", "world") + transmission("beam_joint", "Position")
     model(
         "",
-        launch__sim_dot_launch=STARTER.replace(
-            "</launch>", "<rosparam>bad: {}</rosparam></launch>"
-        ),
+        launch__sim_dot_launch=STARTER.replace("</launch>", f"{parameters}</launch>"),
         robots__arm_dot_urdf=robot(held, ROS1),
         config__good_dot_yaml=ONE.format(name="good", joint="beam"),
     )

@@ -179,10 +179,12 @@ def _definitions(folder: Path) -> list[Path]:
 
 
 def _is_key(name: str, text: str) -> bool:
-    """Whether a text contains a name before a colon, also one that is quoted or has a prefix."""
-    return (
-        name in text and re.search(rf"{re.escape(name)}\s{{0,9}}[\"']?\s{{0,9}}:", text) is not None
-    )
+    """Whether a text contains a name before a colon, or as the namespace of a ``<rosparam>``."""
+    if name not in text:
+        return False
+    word = re.escape(name)
+    pattern = rf"{word}\s{{0,9}}[\"']?\s{{0,9}}:|\bns\s?=\s?[\"'][^\"'<>]{{0,200}}{word}/?[\"']"
+    return re.search(pattern, text) is not None
 
 
 def _is_complete(path: Path, robot: RobotDescription) -> bool:
