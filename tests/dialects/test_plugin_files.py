@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -397,3 +399,17 @@ def test_the_corpus_tries_a_robot_with_a_plugin_in_a_file() -> None:
         verdict = try_robot(robot, standing=1.0)
     assert verdict.plugins == ("tilt_alarm",) and not verdict.missing and verdict.good
     assert try_robot(robot, standing=1.0).missing == ("tilt_alarm",)
+
+
+def test_a_file_that_was_changed_in_the_same_second_is_read_again(
+    tmp_path: Path, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Python's compiled file would be valid: the source has the same size and time."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    path = greeter(tmp_path, "first")
+    for word in ("first", "other"):
+        path.write_text(path.read_text().replace("first", word))
+        os.utime(path, (1e9, 1e9))
+        with cw.World(plugins=[path]) as world:
+            world.spawn(robot)
+            assert f"/{word}" in {topic.name for topic in world.graph.topics()}

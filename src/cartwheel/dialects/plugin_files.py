@@ -7,7 +7,9 @@ import importlib.util
 import sys
 import traceback
 from collections.abc import Iterator, Sequence
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 from cartwheel.codes import devices
@@ -19,6 +21,18 @@ from cartwheel.errors import CartwheelError, GraphError, Origin
 _IMPORT_HINT = (
     "A plugin file can import installed packages, and modules in the folders of PYTHONPATH."
 )
+
+
+class _UncachedLoader(SourceFileLoader):
+    """Compiles a file each time.
+
+    Python's compiled files are valid for a source of the same size that was changed in the same
+    second, so a plugin that was just changed would run as it was before.
+    """
+
+    def get_code(self, fullname: str) -> CodeType:
+        path = self.get_filename(fullname)
+        return self.source_to_code(self.get_data(path), path)
 
 
 class PluginFiles:
@@ -72,10 +86,13 @@ def _plugins_in(path: Path) -> list[type[Plugin[Any]]]:
             hint="Its name must end in .py.",
             values=values,
         )
+    loader = specification.loader
+    if isinstance(loader, SourceFileLoader):
+        loader = specification.loader = _UncachedLoader(name, str(path))
     module = importlib.util.module_from_spec(specification)
     sys.modules[name] = module
     try:
-        specification.loader.exec_module(module)
+        loader.exec_module(module)
         defined = [
             checked_plugin(each, each.__name__)
             for each in vars(module).values()
