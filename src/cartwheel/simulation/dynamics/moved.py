@@ -102,6 +102,8 @@ class Moved:
 
     def _pull(self, model: Any, data: Any) -> bool:
         """Adds the velocities to the welds of attached links; returns whether there are any."""
+        if not data.ne:
+            return False
         bodies = np.stack([model.eq_obj1id, model.eq_obj2id])
         welds = (model.eq_type == _WELD) & (model.eq_objtype == _BODY) & (data.eq_active != 0)
         owners = np.where(welds, self._owners_of_bodies[np.where(welds, bodies, 0)], -1)
