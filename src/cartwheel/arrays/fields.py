@@ -7,7 +7,7 @@ import dataclasses
 import re
 from collections.abc import Callable, Iterable
 from operator import attrgetter
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -25,6 +25,7 @@ _INDEX = re.compile(r"-?\d+")
 _LONGEST = 10**9
 """More elements than an array has."""
 _Steps = list[str | int | slice]
+T = TypeVar("T")
 
 
 class _Absent(float):
@@ -76,14 +77,7 @@ def reader(field: str) -> Callable[[Any], float | Array]:
     """
     steps = _steps(field)
     if not all(isinstance(step, str) for step in steps):
-
-        def read_part(message: Any) -> float | Array:
-            found = _value(message, field, steps)
-            if isinstance(found, _Absent):
-                raise _ends(field, [found])
-            return found
-
-        return read_part
+        return lambda message: _present(_value(message, field, steps), field)
     get, known = attrgetter(field), None
 
     def read(message: Any) -> float | Array:
@@ -105,13 +99,10 @@ def single(message: Any, field: str) -> float | str | bool:
     Raises:
         GraphError: As for `values`, or the field is an array.
     """
-    steps = _steps(field)
-    found = _found(message, field, steps)
+    found = _present(_found(message, field, _steps(field)), field)
     if isinstance(found, bool | str):
         return found
-    value = _value(message, field, steps)
-    if isinstance(value, _Absent):
-        raise _ends(field, [value])
+    value = _number(found, field)
     if isinstance(value, np.ndarray):
         name = _RANGE.sub("", field)
         raise _unknown(f'the field "{field}" is an array', field, f"Write {name}[0].")
@@ -131,9 +122,7 @@ def with_changed(message: Any, field: str, change: Callable[[Array], Array]) -> 
         GraphError: As for `values`, or the field is a time.
     """
     steps = _steps(field)
-    found = _value(message, field, steps)
-    if isinstance(found, _Absent):
-        raise _ends(field, [found])
+    _present(_value(message, field, steps), field)
     return _rebuilt(message, steps, change, field)
 
 
@@ -201,7 +190,11 @@ def _found(message: Any, field: str, steps: _Steps) -> Any:
 
 
 def _value(message: Any, field: str, steps: _Steps) -> float | Array:
-    value = _found(message, field, steps)
+    return _number(_found(message, field, steps), field)
+
+
+def _number(value: Any, field: str) -> float | Array:
+    """A value of a message as a number or numbers."""
     if isinstance(value, _Absent):
         return value
     if hasattr(value, "nanosec"):
@@ -239,6 +232,13 @@ def _not_in(value: Any, step: str, known: list[str], field: str) -> GraphError:
         hint=suggestion(step, known) if known else None,
         values={"field": field, "meant": meant(step, known)},
     )
+
+
+def _present(value: T, field: str) -> T:
+    """A value, unless its index is after the end of the array."""
+    if isinstance(value, _Absent):
+        raise _ends(field, [value])
+    return value
 
 
 def _ends(field: str, found: Iterable[Any]) -> GraphError:
