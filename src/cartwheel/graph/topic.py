@@ -217,23 +217,22 @@ class Publisher(Generic[M]):
         """
         topic = self._topic
         takers = topic.takers
-        if not takers and self.qos != "latched":
-            # This is `publish` inlined, for the same reason.
-            message = form.message(*values)
+        if takers:
             self.sent += 1
-            for callback in topic.callbacks:
+            for take, callback in takers:
                 try:
-                    callback(message)
+                    take(form, values)
                 except (Exception, SystemExit) as error:  # noqa: BLE001 - as in `publish`
                     topic.failed(topic, callback, error)
             return
-        if not takers:
-            self.publish(form.message(*values))
-            return
+        # This is `publish` inlined, for the same reason.
+        message = form.message(*values)
         self.sent += 1
-        for take, callback in takers:
+        if self.qos == "latched":
+            topic.latched = message
+        for callback in topic.callbacks:
             try:
-                take(form, values)
+                callback(message)
             except (Exception, SystemExit) as error:  # noqa: BLE001 - as in `publish`
                 topic.failed(topic, callback, error)
 

@@ -201,8 +201,6 @@ class Advancing(Models):
     def _unserved(self, *due: tuple[Task, ...]) -> Iterator[tuple[Task, ...]]:
         """Those of the due tasks that were created after `complete` has run the others."""
         served = self.engine.served_tasks
-        if served == self.engine.tasks_created:
-            return iter(((),) * len(due))
         return (tuple(task for task in tasks if task.order >= served) for tasks in due)
 
     def _serve(self, first: Sequence[Task], last: Sequence[Task]) -> bool:
