@@ -13,7 +13,7 @@ from cartwheel.codes.world import VALUE_INVALID
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array, Vec3
 from cartwheel.messages.times import Stamp, is_stamp, nanoseconds
-from cartwheel.simulation.limits import duration_ns
+from cartwheel.simulation.limits import LONGEST, duration_ns
 
 Vector = Sequence[float] | NDArray[np.float64]
 """Three numbers."""
@@ -100,6 +100,15 @@ def scalar(
     if number > most:
         raise invalid(name, f"must be at most {most:g}", value)
     return number
+
+
+def duration(value: SupportsFloat, name: str) -> float:
+    """The duration of a run, s.
+
+    Raises:
+        CartwheelError: It is not a number from 0 to `LONGEST`.
+    """
+    return scalar(value, name, least=0.0, most=LONGEST)
 
 
 def flag(value: object, name: str) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from cartwheel.api.values import scalar
+from cartwheel.api.values import duration
 from cartwheel.errors import Pickled
 from cartwheel.testing.clearing import KeepsClear
 from cartwheel.testing.conditions import (
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from cartwheel.geometry import Pose
 
 Limits = tuple[float, float]
-_LONGEST = 1e9
-"""Longest simulation time of a test, s, as for `World.run`."""
 
 
 class UnmetError(Pickled, AssertionError):
@@ -349,7 +347,7 @@ def joint_reaches(
 
 def _until(world: World, condition: Condition, timeout: float) -> float:
     __tracebackhide__ = True
-    _check(world, condition, "once", scalar(timeout, "timeout", least=0.0, most=_LONGEST))
+    _check(world, condition, "once", timeout, name="timeout")
     return world.time
 
 
@@ -358,9 +356,11 @@ def _always(world: World, condition: Condition, seconds: float) -> None:
     _check(world, condition, "always", seconds)
 
 
-def _check(world: World, condition: Condition, when: When, seconds: float) -> None:
+def _check(
+    world: World, condition: Condition, when: When, seconds: float, *, name: str = "seconds"
+) -> None:
     __tracebackhide__ = True
-    seconds = scalar(seconds, "seconds", least=0.0, most=_LONGEST)
+    seconds = duration(seconds, name)
     watch = Watch(condition, when)
     try:
         watch.begin(world)
