@@ -77,12 +77,21 @@ def open_launch(
     found = list(start.diagnostics)
     if world is not None:
         found = [each for each in found if each.values.get("what") != "world"]
-    opened = load_world(world, package_path=package_path) if world else None
-    opened = opened or _world(start, package_path, found)
+    if world:
+        opened = load_world(world, package_path=package_path)
+    else:
+        opened = _world(start, package_path, found)
     names = {each.name for each in opened.models}
     models = []
+    robots: dict[object, RobotDescription] = {}
     for each in start.models:
-        model = _start(each, package_path)
+        # Several models may have the same description.
+        key = (each.description, frozenset(each.use.arguments.items()))
+        if key not in robots:
+            robots[key] = load_robot(
+                each.description, arguments=each.use.arguments, package_path=package_path
+            )
+        model = _start(each, robots[key])
         name = model.name or model.description.name
         if name not in names:
             names.add(name)
@@ -157,13 +166,12 @@ def _world(
     return load_world(name)
 
 
-def _start(model: LaunchedModel, package_path: Sequence[Path]) -> Start:
-    spawn, use = model.spawn, model.use
-    robot = load_robot(model.description, arguments=use.arguments, package_path=package_path)
+def _start(model: LaunchedModel, robot: RobotDescription) -> Start:
+    spawn = model.spawn
     return Start(
         description=robot,
         name=spawn.name or None,
         pose=placed(robot.pose, spawn.place),
         namespace=spawn.namespace or "/",
-        controllers=use,
+        controllers=model.use,
     )

@@ -132,10 +132,10 @@ def _viewer(assembly: Assembly, options: Options) -> AnnouncedViewer | None:
     return assembly.add_viewer(options.port, open_browser=open_browser)
 
 
-def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterator[str]:
+def _files(*descriptions: WorldDescription | RobotDescription) -> Iterator[str]:
     """The files of a simulation."""
     for each in descriptions:
-        if each is not None and not each.origin.file.startswith("<"):
+        if not each.origin.file.startswith("<"):
             yield each.origin.file
 
 

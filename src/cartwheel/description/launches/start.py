@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -94,7 +95,12 @@ def read_launch(
         uses = [each for each in uses_of(file, facts) if each.description is not None]
     except TooCostlyError:
         raise _failure(file, "reading the launch file takes too long") from None
-    models = tuple(_models(facts, uses))
+    found = list(_described(facts, uses))
+    models = tuple(
+        LaunchedModel(description=use.description, use=use, spawn=spawn, is_shown=not facts.spawns)
+        for spawn, use in found
+        if use is not None and use.description is not None
+    )
     if not models:
         required = sorted(facts.declared - {*facts.defaults, *arguments})
         named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
@@ -105,13 +111,17 @@ def read_launch(
     if not world and file.suffix == ".py":
         # Included launch files inherit the arguments, such as `world` of gazebo.launch.py.
         world = arguments.get("world", facts.defaults.get("world", ""))
-    found = [*_unused(file, arguments, facts), *_unknown(file, world, models, facts)]
+    lost = [spawn for spawn, use in found if use is None]
     return LaunchStart(
         file=file,
         models=models,
         world="" if UNKNOWN in world else world,
         bridges=tuple(facts.bridges),
-        diagnostics=tuple(found),
+        diagnostics=(
+            *_unused(file, arguments, facts),
+            *_unknown(file, world, models, facts),
+            *_not_spawned(file, lost, facts),
+        ),
     )
 
 
@@ -141,24 +151,25 @@ def _unknown(
             what="bridge",
             name=name,
         )
-    used = [each.spawn for each in models]
-    for spawn in facts.spawns:
-        if spawn not in used:
-            shown = f'"{spawn.name}"' if spawn.name else "a model"
-            yield _lost(
-                file,
-                f"{shown} is not spawned, because its description is unknown or does not exist",
-                _not_found(facts).strip(),
-                what="model",
-                name=spawn.name,
-            )
+
+
+def _not_spawned(file: Path, lost: Sequence[Spawn], facts: Facts) -> Iterator[Diagnostic]:
+    for spawn in lost:
+        shown = f'"{spawn.name}"' if spawn.name else "a model"
+        yield _lost(
+            file,
+            f"{shown} is not spawned, because its description is unknown or does not exist",
+            _not_found(facts).strip(),
+            what="model",
+            name=spawn.name,
+        )
 
 
 def _not_found(facts: Facts) -> str:
     """What was not found, as a hint; empty if nothing is missing."""
     if not facts.absent:
         return ""
-    shown = "; ".join(facts.absent[:_SHOWN])
+    shown = "; ".join(itertools.islice(facts.absent, _SHOWN))
     advice = ""
     if any(each.startswith("package") for each in facts.absent):
         advice = f"Pass the folders of packages: {PACKAGE_PATH.given('FOLDER')}. "
@@ -174,23 +185,15 @@ def _lost(file: Path, text: str, hint: str = "", **values: str) -> Diagnostic:
     )
 
 
-def _models(facts: Facts, uses: Sequence[LaunchUse]) -> list[LaunchedModel]:
-    """The spawned models; without any, the model that is only shown."""
+def _described(facts: Facts, uses: Sequence[LaunchUse]) -> Iterator[tuple[Spawn, LaunchUse | None]]:
+    """The spawned models with their descriptions; without any, the model that is only shown."""
     own = {each.described for each in facts.spawns}
     others = [number for number in range(len(uses)) if number not in own] or [*range(len(uses))]
-    found = []
     for spawn in facts.spawns or [Spawn()]:
         number = spawn.described
         if number is None and spawn.file is None and others:
             number = facts.published.get(spawn.source, others[0])
-        if (
-            number is not None
-            and number != ABSENT
-            and (file := (use := uses[number]).description) is not None
-        ):
-            shown = not facts.spawns
-            found.append(LaunchedModel(description=file, use=use, spawn=spawn, is_shown=shown))
-    return found
+        yield spawn, None if number is None or number == ABSENT else uses[number]
 
 
 def _unused(file: Path, arguments: Mapping[str, str], facts: Facts) -> list[Diagnostic]:

@@ -29,17 +29,15 @@ from cartwheel.errors import CartwheelError
 
 ABSENT = -1
 """The number of a description that was not found."""
-_GAZEBO = frozenset({"gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "xacro"})
-"""Packages of which nothing is needed."""
+_GAZEBO = frozenset({"gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz"})
+"""Packages with nodes that start Gazebo or spawn models."""
 _LOOK = 100
 """Steps of a look at a file or folder."""
 DEEPEST = 6
 """Maximum nesting of included launch files."""
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
 """Ends of the names of descriptions."""
-_SPAWNERS = frozenset(
-    {"spawn_model", "spawn_entity.py", "create", "gzserver", "gzclient", "gz_sim", "gazebo"}
-)
+_SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 BRIDGES = frozenset({"ros_gz_bridge", "ros_ign_bridge"})
 """Packages that bridge topics of gz-sim."""
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
@@ -117,8 +115,8 @@ class Facts:
     effort: Effort
     """The remaining effort."""
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
-    absent: list[str] = field(default_factory=list)
-    """Files and packages that are stated, but were not found."""
+    absent: dict[str, None] = field(default_factory=dict)
+    """Files and packages that are stated, but were not found, in their order."""
     published: dict[str, int] = field(default_factory=dict)
     """The number of a description, by the parameter or topic that contains it; `ABSENT` if it was
     not found."""
@@ -145,8 +143,8 @@ class Facts:
         """The folder of a package as text, with an unknown part if it is not found."""
         self.effort.search(name.strip())
         folder = self.find(name.strip()) if UNKNOWN not in name else None
-        if folder is None and UNKNOWN not in name and name.strip() not in _GAZEBO:
-            self._lack(f'package "{name.strip()}"')
+        if folder is None and UNKNOWN not in name and name.strip() not in {*_GAZEBO, "xacro"}:
+            self.absent[f'package "{name.strip()}"'] = None
         folder = folder or self.home
         return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
 
@@ -206,12 +204,8 @@ class Facts:
             self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
         if len(self.descriptions) > number:
             return number
-        self._lack(f'file "{file}"'.replace(UNKNOWN, "…"))
+        self.absent[f'file "{file}"'.replace(UNKNOWN, "…")] = None
         return ABSENT
-
-    def _lack(self, what: str) -> None:
-        if what not in self.absent:
-            self.absent.append(what)
 
     def store_parameter(self, name: str, number: int | None) -> None:
         """Stores which description a parameter contains; the last one counts."""
@@ -270,7 +264,7 @@ class Facts:
             space: Its namespace.
             described: The number of the description whose text is one of its arguments.
         """
-        if package in ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz"):
+        if package in _GAZEBO:
             self.simulated |= executable in _SPAWNERS
             if executable in MODEL_SPAWNERS:
                 spawn = spawn_of(executable, words, space)

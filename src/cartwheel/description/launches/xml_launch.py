@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +55,8 @@ class _Reader:
         if tag in ("arg", "let"):
             self._argument(node)
         elif tag == "group":
-            self._within(node)
+            with self._within(node):
+                self.group(node)
         elif tag in ("push_ros_namespace", "push-ros-namespace"):
             facts.namespace = self._space(node)
         elif tag == "include":
@@ -69,9 +71,8 @@ class _Reader:
             file = self._value(node, "file")
             # In ROS 2, files inherit the arguments of those that include them.
             is_ros2 = file.endswith(".py") or "find-pkg-share" in node.attributes.get("file", "")
-            space, facts.namespace = facts.namespace, self._space(node)
-            facts.include(file, given, self._depth, self._arguments if is_ros2 else {})
-            facts.namespace = space
+            with self._within(node):
+                facts.include(file, given, self._depth, self._arguments if is_ros2 else {})
         elif tag == "param":
             self._parameter(node)
         elif tag == "rosparam":
@@ -85,12 +86,14 @@ class _Reader:
                 split(self._value(node, "args")),
                 self._space(node),
             )
-            self._within(node)
+            with self._within(node):
+                self.group(node)
 
-    def _within(self, node: Node) -> None:
-        """Reads the elements of an element in its namespace."""
+    @contextlib.contextmanager
+    def _within(self, node: Node) -> Iterator[None]:
+        """Within the block, the namespace is that of an element."""
         space, self._facts.namespace = self._facts.namespace, self._space(node)
-        self.group(node)
+        yield
         self._facts.namespace = space
 
     def _space(self, node: Node) -> str:
