@@ -58,6 +58,11 @@ def test_those_that_differ_in_names_and_numbers_are_one_from_three_on():
 @pytest.mark.wording
 def test_those_without_a_place_are_counted():
     assert lines(odd(), odd(), odd()) == ["link a is odd (and 2 more)"]
+    whole = [
+        replace(odd(), origin=Origin(file=f"/ws/{name}.urdf"))  # without a line
+        for name in ("a", "a", "b")
+    ]
+    assert lines(*whole) == ["link a is odd (and 2 more: b.urdf)"]
 
 
 def test_errors_come_first_then_the_order_of_files_and_lines():

@@ -66,5 +66,5 @@ def _place(each: Diagnostic, beside: Origin | None) -> str:
     if each.origin is None:
         return ""
     if beside is not None and each.origin.file == beside.file:
-        return f"line {each.origin.line}"
-    return f"{PurePath(each.origin.file).name}:{each.origin.line}"
+        return f"line {each.origin.line}" if each.origin.line else ""
+    return str(replace(each.origin, file=PurePath(each.origin.file).name))
