@@ -25,7 +25,7 @@ def package(program):
 
 def test_a_launch_file_is_run(package):
     done = package("run", "sim.launch", "--headless", "--for", "0.1", "--speed", "max")
-    assert "launch  sim.launch; nodes other than models and controllers" in done.stdout
+    assert "launch  sim.launch; only its models and their controllers are started" in done.stdout
     assert "world   mud with " in done.stdout
     assert "robot   one, 2 kg, 1 link, 0 joints" in done.stdout
 

@@ -119,7 +119,7 @@ LAUNCH_VALUE_UNKNOWN = Code(
     "CW164",
     "launch-value-unknown",
     "warning",
-    "a value in a launch file is known only when the launch file is executed",
+    "a value in a launch file is unknown, or a file in it was not found",
 )
 LAUNCH_WORLD_ABSENT = Code(
     "CW165",

@@ -90,7 +90,7 @@ class Report(Observer):
 
     def launched(self, file: PurePath) -> None:
         """Prints the launch file, of which only the models and their controllers start."""
-        self._line("launch", f"{file}; nodes other than models and controllers are not started")
+        self._line("launch", f"{file}; only its models and their controllers are started")
 
     def viewer_shown(self, url: str, access: Access) -> None:
         """Prints the address of the viewer, and who can connect."""

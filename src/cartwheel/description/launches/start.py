@@ -21,6 +21,7 @@ from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.options import PACKAGE_PATH, WORLD
 from cartwheel.similar_names import meant, suggestion
 
+_WHY = "because launch files are read, but not executed"
 _SHOWN = 4
 """Maximum number of missing files and packages in a hint."""
 _ENDS = (".launch", ".launch.xml", ".py")
@@ -131,23 +132,27 @@ def _unknown(
     """What only the execution of a launch file determines."""
     if UNKNOWN in world:
         yield _lost(
-            file, "the world is unknown", f"Pass a world: {WORLD.given('FILE')}.", what="world"
+            file,
+            f"the world is unknown, {_WHY}",
+            f"Pass a world: {WORLD.given('FILE')}.",
+            what="world",
         )
     count = max(each.use.unknown for each in models)
     if count:
         yield _lost(
             file,
-            f"the values of {count} xacro argument{'s' * (count > 1)} are unknown, so the defaults "
-            "are used",
+            f"the values of {count} xacro argument{'s' * (count > 1)} are unknown, {_WHY}; the "
+            "defaults are used",
             what="arguments",
         )
     for what, text in _PARTS.items():
         if any(what in each.spawn.unknown for each in models):
-            yield _lost(file, f"{text} of a model is unknown", what=what)
+            yield _lost(file, f"{text} of a model is unknown, {_WHY}", what=what)
     for name in facts.lost_bridges:
         yield _lost(
             file,
-            f'"{name}", which renames topics for ros_gz_bridge, was not found',
+            f'the configuration file "{name}" of ros_gz_bridge was not found, so the topics in it '
+            "are not renamed",
             what="bridge",
             name=name,
         )
@@ -178,7 +183,7 @@ def _not_found(facts: Facts) -> str:
 
 def _lost(file: Path, text: str, hint: str = "", **values: str) -> Diagnostic:
     return codes.LAUNCH_VALUE_UNKNOWN.diagnostic(
-        f"{text}: launch files are read, but not executed",
+        text,
         origin=Origin(file=str(file)),
         hint=hint,
         values=values,
