@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,18 +10,16 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel.codes.files import XACRO_NAME_UNKNOWN
-from cartwheel.corpus.worlds import robots_in_worlds
+from cartwheel.corpus.worlds import robots_in_worlds, text_of
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
-from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.use import SUFFIXES, LaunchUse
 from cartwheel.description.loading import open_description, understand
 from cartwheel.errors import DescriptionError
 
 _SEMANTICS = (".srdf", ".srdf.xacro")
 """MoveIt's files, which begin like a robot."""
-_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
-_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
 _INCLUDE = re.compile(
     r"""<(?:xacro:)?include\b[^<>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL
@@ -228,23 +225,17 @@ def _only_attaches(text: str, root: Node) -> bool:
 
 
 def _files(folder: Path) -> Iterator[Path]:
-    for root, folders, names in os.walk(folder):
-        folders[:] = sorted(
-            name for name in folders if not name.startswith(".") and name not in _SKIPPED
-        )
-        if "worlds" in Path(root).relative_to(folder).parts and "model.config" not in names:
+    for here, names in source_folders(folder):
+        if "worlds" in here.relative_to(folder).parts and "model.config" not in names:
             continue  # of the files of worlds, only their models can be robots
-        for name in sorted(names):
+        for name in names:
             if name.endswith(SUFFIXES) and not name.endswith(_SEMANTICS):
-                yield Path(root, name)
+                yield here / name
 
 
 def _text(path: Path) -> str | None:
     """A description's text without comments; None for any other file."""
-    try:
-        text = _COMMENT.sub("", read_regular_text(path))
-    except OSError:
-        return None
+    text = text_of(path)
     return text if _ROOT.search(text) else None
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -12,14 +11,14 @@ from cartwheel.corpus.movers import is_mover
 from cartwheel.description import load_world
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.loading import open_description
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import DescriptionError, Origin, UnknownNameError
 
-SUFFIXES = (".world", ".sdf", ".xacro")
+_SUFFIXES = (".world", ".sdf", ".xacro")
 _MOST = 50
 """Maximum number of robots in one world."""
-_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 
 
@@ -65,19 +64,21 @@ def load_from_world(
     return replace(robot, diagnostics=inside), is_inside
 
 
+def text_of(path: Path) -> str:
+    """A file's text without comments; empty if it cannot be read."""
+    try:
+        return _COMMENT.sub("", read_regular_text(path))
+    except OSError:
+        return ""
+
+
 def _files(folder: Path) -> Iterator[Path]:
-    for root, folders, names in os.walk(folder):
-        folders[:] = sorted(
-            name for name in folders if not name.startswith(".") and name not in _SKIPPED
-        )
-        yield from (Path(root, name) for name in sorted(names) if name.endswith(SUFFIXES))
+    for here, names in source_folders(folder):
+        yield from (here / name for name in names if name.endswith(_SUFFIXES))
 
 
 def _robots(path: Path, package_path: Sequence[Path]) -> list[str]:
-    try:
-        text = _COMMENT.sub("", read_regular_text(path))
-    except OSError:
-        return []
+    text = text_of(path)
     if "<world" not in text or "<plugin" not in text or "<model" not in text:
         return []
     try:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 from cartwheel import yaml_text
+from cartwheel.description.files.source_folders import source_folders
 from cartwheel.scenarios.schema import schema
 
 _SUFFIXES = (".yaml", ".yml")
-_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
 # Blanks, not `\s`: many empty lines would take time by their square.
 _EXPECT = re.compile(r"""^[ \t]*["']?expect["']?[ \t]*:""", re.MULTILINE)
 
@@ -30,11 +29,10 @@ def find_scenarios(folder: Path) -> tuple[list[Path], list[Path]]:
 
 
 def _files(folder: Path) -> Iterator[Path]:
-    for root, folders, names in os.walk(folder):
-        folders[:] = [name for name in folders if not name.startswith(".") and name not in _SKIPPED]
+    for here, names in source_folders(folder):
         for name in names:
             if name.endswith(_SUFFIXES) and not name.startswith("."):
-                yield Path(root, name)
+                yield here / name
 
 
 def _is_scenario(file: Path) -> bool:

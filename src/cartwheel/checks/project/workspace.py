@@ -12,11 +12,11 @@ from cartwheel.checks import nodes
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.package_folders import IGNORE_MARKERS
+from cartwheel.description.files.source_folders import source_folders
 
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".world")
 MOST = 5000
 """Maximum number of files to examine in a folder."""
-_LEFT_OUT = {"build", "install", "devel", "log", "node_modules", "__pycache__"}
 _SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)|^(?:package|model|file)://")
 _FIND = re.compile(r"^(?:\$\(find(?:-pkg-share)? +([\w.-]+)\)|package://([\w.-]+))/(.+)$")
 _BUILT_IN = frozenset({
@@ -33,7 +33,7 @@ def descriptions(folder: Path) -> list[Path]:
     Build folders, hidden folders and folders with ``COLCON_IGNORE`` or similar files are skipped.
     Unreadable files are included, so that their errors are reported.
     """
-    walked = list(_walk(folder))
+    walked = list(source_folders(folder, markers=IGNORE_MARKERS))
     files = {path: _File.read(path) for path in _files(walked)}
     included: set[Path] = set()
     packages = {path.parent.name: path.parent for path in _manifests(folder, walked)}
@@ -57,18 +57,6 @@ class _File:
         if root is None:
             return cls((), describes=True)
         return cls(tuple(_includes(root)), describes=_describes(root))
-
-
-def _walk(folder: Path) -> Iterator[tuple[Path, list[str]]]:
-    for here, folders, files in os.walk(folder):
-        folders[:] = sorted(
-            name
-            for name in folders
-            if name not in _LEFT_OUT
-            and not name.startswith(".")
-            and not any(Path(here, name, marker).exists() for marker in IGNORE_MARKERS)
-        )
-        yield Path(here), sorted(files)
 
 
 def _files(walked: Walked) -> list[Path]:

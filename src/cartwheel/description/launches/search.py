@@ -11,12 +11,12 @@ from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.python_launch import read_python
 from cartwheel.description.launches.use import Facts, LaunchUse, beside
 from cartwheel.description.launches.xml_launch import read_xml
 
-_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
 _FOLDER = 100
 """Steps to list a folder."""
 _MOST = 500
@@ -187,17 +187,14 @@ def _common(one: Path, other: Path) -> int:
 
 def _files(folder: Path, effort: Effort) -> Iterator[Path]:
     count = 0
-    for root, folders, names in os.walk(folder):
+    for here, names in source_folders(folder):
         effort.spend(_FOLDER + len(names))
-        folders[:] = sorted(
-            name for name in folders if not name.startswith(".") and name not in _SKIPPED
-        )
-        for name in sorted(names):
-            if _is_launch(Path(root, name)):
+        for name in names:
+            if _is_launch(here / name):
                 count += 1
                 if count > _MOST:
                     return
-                yield Path(root, name)
+                yield here / name
 
 
 def _is_launch(path: Path) -> bool:
