@@ -10,6 +10,10 @@ from cartwheel.codes.robot import WHEEL_SPEED_LIMITED
 GZ = """<gazebo><plugin name="drive" filename="gz-sim-diff-drive-system">
   <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>
   <wheel_separation>0.3</wheel_separation><wheel_radius>0.1</wheel_radius></plugin></gazebo>"""
+CAR = GZ.replace("diff-drive", "ackermann-steering")
+MECANUM = """<gazebo><plugin name="drive" filename="gz-sim-mecanum-drive-system">
+  <front_left_joint>left_joint</front_left_joint><front_right_joint>right_joint</front_right_joint>
+  <wheel_separation>0.3</wheel_separation><wheel_radius>0.1</wheel_radius></plugin></gazebo>"""
 CLASSIC = GZ.replace("gz-sim-diff-drive-system", "libgazebo_ros_diff_drive.so")
 CONTROL = '<gazebo><plugin name="c" filename="{}"><parameters>c.yaml</parameters></plugin></gazebo>'
 JOINTS = (
@@ -43,6 +47,9 @@ CONTROLLERS = {
         (GZ, 0.4, True),
         (GZ, 0.6, False),
         (GZ, 0.0, False),
+        (CAR, 0.4, True),
+        (CAR, 0.6, False),
+        (MECANUM, 0.4, True),
         (CLASSIC, 0.4, False),
         (JOINTS + CONTROL.format("gz_ros2_control-system"), 0.4, True),
         (JOINTS + CONTROL.format("libgazebo_ros2_control.so"), 0.4, False),

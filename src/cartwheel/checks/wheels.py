@@ -6,10 +6,16 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from cartwheel.checks import plugin_tags
 from cartwheel.checks.robot import Drive, Robot
 from cartwheel.checks.subject import Subject
 from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats, Solid, bounds
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.gz.ackermann import GzAckermannDrive
+from cartwheel.dialects.gz.diff_drive import GzDiffDrive
+from cartwheel.dialects.gz.mecanum import GzMecanumDrive
+from cartwheel.dialects.tag_roles import WHEEL_ROLES
 from cartwheel.geometry import Pose, rotate
 
 _DIRECTIONS = 32
@@ -28,6 +34,8 @@ _SAME = 1e-6
 """Distance between two joints at the same place, m."""
 CAMBER = 0.5
 """Minimum cosine between a wheel axis and the axle."""
+_GZ_DRIVES = (GzDiffDrive, GzMecanumDrive, GzAckermannDrive)
+"""Plugins whose wheels respect the velocity limits of their joints."""
 
 
 def wheel_radius(robot: Robot, joint: Joint) -> float | None:
@@ -256,6 +264,21 @@ def wheel_joints(robot: Robot) -> list[Joint]:
     names = dict.fromkeys(name for sides in robot.sides for side in sides for name in side)
     found = [robot.joints[name] for name in names if name in robot.joints]
     return [joint for joint in found if joint.child in robot.links]
+
+
+def gz_wheels(robot: Robot) -> list[str]:
+    """Names of the wheel joints of gz-sim's drives, whose velocity limits apply.
+
+    Cars and robots with mecanum wheels are not among the `Robot.drives`.
+    """
+    return [
+        name
+        for tag in robot.description.plugins
+        if plugin_named(tag.filename) in _GZ_DRIVES
+        for role in plugin_tags.roles(tag.filename)
+        if role.role in (*WHEEL_ROLES, "joint")
+        for name in role.joints(tag.element)
+    ]
 
 
 def lowest(robot: Robot, *links: str) -> float | None:

@@ -8,18 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import wheel_joints, wheel_place, wheel_radius
+from cartwheel.checks.wheels import gz_wheels, wheel_place, wheel_radius
 from cartwheel.description.model import Element, RobotDescription
 from cartwheel.devices.joints.limits import velocity_limit
-from cartwheel.dialects.catalogue import plugin_named
-from cartwheel.dialects.gz.ackermann import GzAckermannDrive
-from cartwheel.dialects.gz.diff_drive import GzDiffDrive
-from cartwheel.dialects.gz.mecanum import GzMecanumDrive
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 
-_GZ = (GzDiffDrive, GzMecanumDrive, GzAckermannDrive)
-"""Plugins whose wheels respect the velocity limits of their joints."""
 _BELOW = 0.9
 """Part of the wheels' maximum speed that is commanded."""
 _TURNS = ("angular", "yaw", "rotation", "turn")
@@ -66,8 +60,7 @@ def within_speeds(
         if isinstance(each, WheelController)
         for name, joint in each.claims.items()
     }
-    if any(plugin_named(tag.filename) in _GZ for tag in robot.description.plugins):
-        speeds |= {joint.name: velocity_limit(joint) for joint in wheel_joints(robot)}
+    speeds |= {name: velocity_limit(robot.joints.get(name)) for name in gz_wheels(robot)}
     rims = {
         name: speed * radius
         for name, speed in speeds.items()

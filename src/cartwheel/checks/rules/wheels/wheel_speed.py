@@ -7,16 +7,11 @@ from collections.abc import Iterator
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import wheel_radius
+from cartwheel.checks.wheels import gz_wheels, wheel_radius
 from cartwheel.codes import robot as robot_codes
-from cartwheel.dialects.catalogue import plugin_named, short_name
-from cartwheel.dialects.gz.ackermann import GzAckermannDrive
-from cartwheel.dialects.gz.diff_drive import GzDiffDrive
-from cartwheel.dialects.gz.mecanum import GzMecanumDrive
+from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Diagnostic
 
-_GZ = (GzDiffDrive, GzMecanumDrive, GzAckermannDrive)
-"""Plugins whose wheels respect the velocity limits of their joints."""
 _FREE = "gazebo_ros2_control"
 """The plugin whose controllers do not respect them."""
 _SLOW = 0.05
@@ -47,12 +42,7 @@ def wheel_speed_limited(subject: Subject) -> Iterator[Diagnostic]:
 
 def _limited(robot: Robot) -> list[str]:
     """The driven wheels whose drive respects their velocity limits."""
-    names = [
-        name
-        for drive in robot.drives
-        if plugin_named(drive.tag.filename) in _GZ
-        for name in drive.joints
-    ]
+    names = gz_wheels(robot)
     plugins = [short_name(tag.filename) for tag in robot.description.plugins]
     managers = [each for each in plugins if "ros_control" in each or "ros2_control" in each]
     if managers and _FREE not in managers:
