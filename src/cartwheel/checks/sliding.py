@@ -154,23 +154,24 @@ def is_held(robot: Robot, driven: Sequence[Joint]) -> bool:
 
     This is unknown, and false, unless all driven joints have an effort limit.
     """
-    limits = [joint.axis.effort for joint in driven]
-    radii = [wheel_radius(robot, joint) for joint in driven]
     wheels = {name for joint in driven for name in wheel_links(robot, joint)}
-    bottoms = [lowest(robot, *wheel_links(robot, joint)) for joint in driven]
-    center = center_of_mass(robot.description, starting_poses(robot))
-    if center is None or not robot.placed.issuperset(wheels) or not driven:
+    if not driven or not robot.placed.issuperset(wheels):
         return False
-    force = 0.0
-    for limit, radius, bottom in zip(limits, radii, bottoms, strict=True):
+    force, bottoms = 0.0, []
+    for joint in driven:
+        limit, radius = joint.axis.effort, wheel_radius(robot, joint)
+        bottom = lowest(robot, *wheel_links(robot, joint))
         if not limit or not radius or bottom is None:
             return False
         force += limit / radius
+        bottoms.append(bottom)
+    center = center_of_mass(robot.description, starting_poses(robot))
+    if center is None:
+        return False
     axle = wheel_axis(robot, driven[0])
     treads = [wheel_tread(robot, joint) for joint in driven]
     contacts = [Contact(x=_ahead(axle, tread), y=float(axle @ tread)) for tread in treads]
-    ground = min(bottom for bottom in bottoms if bottom is not None)
-    others = list(_others(robot, driven, wheels, axle, ground))
+    others = list(_others(robot, driven, wheels, axle, min(bottoms)))
     x, y = np.array([(each.x, each.y) for each in (*contacts, *others)]).T
     loads = _loads(x, y, (_ahead(axle, center), float(axle @ center)))[len(contacts) :]
     # On the coefficient of the ground, which is 1.

@@ -55,56 +55,70 @@ def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
 @rule(robot_codes.CASTER_FRICTION)
 def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
-        wheels = {name for joint in wheel_joints(robot) for name in wheel_links(robot, joint)}
+        driven = wheel_joints(robot)
+        wheels = {name for joint in driven for name in wheel_links(robot, joint)}
         if not wheels or _names_nothing(subject):
             continue
-        weak = is_held(robot, wheel_joints(robot))
+        weak = is_held(robot, driven)
         for link in robot.description.links:
             holder = robot.inbound.get(link.name)
             if "caster" not in link.name.lower() or holder is None:
                 continue
-            rolls = rolls_only_forward(robot, holder, wheel_joints(robot))
+            rolls = rolls_only_forward(robot, holder, driven)
             if holder.type != "fixed" and not rolls:
                 continue
             if not _touches_ground(robot, link, wheels):
                 continue
-            collision = link.collisions[0]
-            mu = collision.surface.mu1
-            if not _brakes(mu):
-                continue
-            text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
-            in_sdf = subject.in_sdf(collision.origin)
-            yield robot_codes.CASTER_FRICTION.diagnostic(
-                message=f'the caster "{link.name}" cannot '
-                f"{'swivel, so it slides when the robot turns' if rolls else 'roll'}, and its "
-                f"friction coefficient is {_shown(mu)}{_STUCK if weak and not rolls else ''}",
-                severity="warning" if weak and not rolls else None,
-                values={"link": link.name, "friction": mu, "holds": weak and not rolls},
-                origin=collision.origin,
-                instead="" if in_sdf else text,
-                hint=_IN_SDF
-                if in_sdf
-                else "Add these tags to the robot, or change the existing values.",
+            lacks = "swivel, so it slides when the robot turns" if rolls else "roll"
+            yield from _braking(
+                subject,
+                link,
+                link.collisions[0],
+                f'the caster "{link.name}" cannot {lacks}',
+                holds=weak and not rolls,
+                instead=f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>',
+                hint="Add these tags to the robot, or change the existing values.",
             )
         for link, collision in _fixed_balls(robot, wheels):
-            mu = collision.surface.mu1
-            if not _brakes(mu):
-                continue
             alone = link.name != robot.rigid_root(link.name) and len(link.collisions) == 1
             own = (
                 "Set"
                 if alone
                 else "Move the sphere to a link of its own, on a fixed joint, and set"
             )
-            hint = f"{own} <mu1> and <mu2> of this link to 0."
-            yield robot_codes.CASTER_FRICTION.diagnostic(
-                message=f'the sphere of link "{link.name}" is a caster that cannot roll, and its '
-                f"friction coefficient is {_shown(mu)}{_STUCK if weak else ''}",
-                severity="warning" if weak else None,
-                values={"link": link.name, "friction": mu, "holds": weak},
-                origin=collision.origin,
-                hint=_IN_SDF if subject.in_sdf(collision.origin) else hint,
+            yield from _braking(
+                subject,
+                link,
+                collision,
+                f'the sphere of link "{link.name}" is a caster that cannot roll',
+                holds=weak,
+                hint=f"{own} <mu1> and <mu2> of this link to 0.",
             )
+
+
+def _braking(
+    subject: Subject,
+    link: Link,
+    collision: Collision,
+    problem: str,
+    *,
+    holds: bool,
+    instead: str = "",
+    hint: str,
+) -> Iterator[Diagnostic]:
+    """The diagnostic for a part that brakes the robot; `instead` and `hint` are those for URDF."""
+    mu = collision.surface.mu1
+    if not _brakes(mu):
+        return
+    in_sdf = subject.in_sdf(collision.origin)
+    yield robot_codes.CASTER_FRICTION.diagnostic(
+        message=f"{problem}, and its friction coefficient is {_shown(mu)}{_STUCK if holds else ''}",
+        severity="warning" if holds else None,
+        values={"link": link.name, "friction": mu, "holds": holds},
+        origin=collision.origin,
+        instead="" if in_sdf else instead,
+        hint=_IN_SDF if in_sdf else hint,
+    )
 
 
 @rule(robot_codes.PLANAR_FRICTION)
