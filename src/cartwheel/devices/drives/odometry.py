@@ -54,9 +54,8 @@ class OdometryConfig:
 
 def base_of(component: Component, config: OdometryConfig) -> LinkHandle:
     """The link that is the base, or the root link: a base frame need not be a link."""
-    description = component.part.description
-    known = description.link(config.base) is not None
-    return component.part.link(config.base if known else description.canonical_link)
+    known = component.part.description.link(config.base) is not None
+    return component.link_or_root(config.base if known else "")
 
 
 class Odometry(Component):

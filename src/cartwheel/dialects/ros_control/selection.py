@@ -109,13 +109,14 @@ def selection(
     if starter is not use and not commanding(robot, named):
         # The launch file of another part only publishes the states of all joints.
         starter, named = None, []
-    if starter is None and (use is None or not use.spawned) and not suggested(robot):
+    near = [] if named else suggested(robot)
+    if starter is None and (use is None or not use.spawned) and not near:
         for each in starters(Path(robot.origin.file), launches)[:_MOST]:
             found = suggested(robot, among=each.controllers)
             if commanding(robot, found):
                 starter, named = each, found
                 break
-    files = tuple(each for each in named or suggested(robot) if _is_complete(each, robot))
+    files = tuple(each for each in named or near if _is_complete(each, robot))
     names = starter.spawned if starter is not None and (named or not files) else ()
     unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
     reported = _undefined(robot, starter or _starter(Path(robot.origin.file), use, launches))
@@ -146,15 +147,16 @@ def _undefined(robot: RobotDescription, starter: LaunchUse | None) -> Iterator[D
         return
     roots = dict.fromkeys((folder, root_of(starter.file) or folder))
     searched = [_definitions(root) for root in roots]
-    paths = list(itertools.chain(*searched)) if all(searched) else []
+    if not all(searched):
+        return
     undefined = set(starter.spawned)
-    for path in paths:
+    for path in itertools.chain(*searched):
         if not undefined:
             return
         with contextlib.suppress(OSError, UnicodeDecodeError):
             text = yaml_text.read(path)
             undefined -= {name for name in undefined if _is_key(name, text)}
-    for name in starter.spawned if paths else ():
+    for name in starter.spawned:
         if name in undefined:
             yield CONTROLLER_UNDEFINED.diagnostic(
                 f'"{starter.file.name}" starts the controller "{name}", but no file near it '
