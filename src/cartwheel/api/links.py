@@ -59,7 +59,7 @@ class Link(LinkProperties):
         with self._world.lock:
             truth = self._world.session.simulation.truth
             handle = truth.link(self.model, self.name)
-            truth.locate()
+            truth.locate(velocities=False)
             return handle.pose
 
     @property

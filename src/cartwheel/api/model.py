@@ -61,7 +61,7 @@ class Model(MessagingModel):
         """
         with self._world.lock:
             simulation = self._world.session.simulation
-            simulation.truth.locate()
+            simulation.truth.locate(velocities=False)
             return simulation.pose(self.name)
 
     @pose.setter

@@ -83,7 +83,7 @@ class Engine:
         self.directions: Directions | None = None
         self.changes = self.revisions = 0
         """Changes of the model and of forces outside of the state, and of the model alone."""
-        self._located = b""
+        self._posed = self._located = b""
         """The state of the last `locate`."""
         self.refreshed = b""
         """The state of the last `refresh`; empty after a step."""
@@ -171,7 +171,7 @@ class Engine:
         self.carries = self.carries and self.stepping.carried is not None
         self.visuals.bind(model, data, compile_visuals)
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
-        self._located = self.refreshed = b""
+        self._posed = self._located = self.refreshed = b""
         self._places.clear()
         self._inverses.clear()
 
@@ -189,7 +189,7 @@ class Engine:
         changes, before = self.changes + 1, saved["changes"].to_bytes(8)
         vars(self).update(saved, changes=changes, revisions=self.revisions + 1)
         now = self.signature()
-        for name in ("_located", "refreshed"):
+        for name in ("_posed", "_located", "refreshed"):
             if saved[name] == now.removesuffix(changes.to_bytes(8)) + before:
                 setattr(self, name, now)
 
@@ -222,7 +222,7 @@ class Engine:
         state = self.signature()
         if state != self.refreshed:
             self.forward()
-            self._located = self.refreshed = state
+            self._posed = self._located = self.refreshed = state
 
     def signature(self) -> bytes:
         """Differs for any two states with different poses, contacts or forces."""
@@ -238,30 +238,47 @@ class Engine:
         Raises:
             SimulationError: There is not enough memory for the contacts.
         """
-        self.stepping.forward(self.data if data is None else data, carries=self.carries)
+        if data is None:
+            data = self.data
+            self._posed = self._located = self.refreshed = b""
+        self.stepping.forward(data, carries=self.carries)
 
     def refresh_poses(self) -> None:
+        """Computes poses, but only if the state differs from that of the last call."""
+        if self.serving:
+            return
+        state = self.signature()
+        if state != self._posed:
+            mujoco.mj_kinematics(self.model, self.data)
+            self._posed, self._located, self.refreshed = state, b"", b""
+
+    def refresh_motion(self) -> None:
         """As `locate`, but only if the state differs from that of the last call."""
         if self.serving:
             return
         state = self.signature()
         if state != self._located:
-            self.locate()
-            self._located = state
+            self.locate(poses=state != self._posed)
+            self._posed, self._located, self.refreshed = state, state, b""
 
     def keep(self) -> None:
         """Lets the next step and `refresh` use the forward pass that was just made, unless the
         state changes before.
         """
-        self._located = self.refreshed = self.signature()
+        self._posed = self._located = self.refreshed = self.signature()
 
     def is_refreshed(self) -> bool:
         """Whether the results of the last forward pass are those of the current state."""
         return bool(self.refreshed) and self.refreshed == self.signature()
 
-    def locate(self) -> None:
-        """Computes only poses and velocities for the current state."""
-        mujoco.mj_kinematics(self.model, self.data)
+    def locate(self, *, poses: bool = True) -> None:
+        """Computes only poses and velocities for the current state.
+
+        Args:
+            poses: False if the poses have been computed.
+        """
+        if poses:
+            mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_comVel(self.model, self.data)
         if self.stepping.moved is not None:

@@ -80,9 +80,16 @@ class GroundTruth:
             handle.bind(self._engine.model, self._engine.data)
         return handle
 
-    def locate(self) -> None:
-        """Updates poses and velocities to the current state."""
-        self._engine.refresh_poses()
+    def locate(self, *, velocities: bool = True) -> None:
+        """Updates poses to the current state.
+
+        Args:
+            velocities: Update velocities as well.
+        """
+        if velocities:
+            self._engine.refresh_motion()
+        else:
+            self._engine.refresh_poses()
 
     def acceleration(self, model: str, link: str) -> tuple[Vec3, Vec3]:
         """Linear and angular acceleration of a link's origin, m/s² and rad/s², in world axes.
