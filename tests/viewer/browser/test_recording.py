@@ -67,7 +67,7 @@ def page(browser, cinema):
 
 
 def shown_ns(page):
-    return int(page.locator(".cw-clock").get_attribute("data-time-ns"))
+    return int(page.locator(".cw-clock[data-time-ns]").get_attribute("data-time-ns"))
 
 
 def place(cinema):

@@ -10,7 +10,7 @@ def time_ns(arena):
 
 
 def shown_ns(page):
-    return int(page.locator(".cw-clock").get_attribute("data-time-ns"))
+    return int(page.locator(".cw-clock[data-time-ns]").get_attribute("data-time-ns"))
 
 
 def test_space_holds_time_and_lets_it_go(page, arena):
