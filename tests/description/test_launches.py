@@ -131,6 +131,33 @@ def test_launch_files_of_ros1_name_arguments_controllers_and_conditions(package)
     assert control.file == folder / "launch/control.launch"
 
 
+def test_an_included_file_of_ros1_may_be_given_a_default(package):
+    describe = ROS1.replace('default="true"', 'default="false"')
+    folder = package(
+        sim_dot_launch="""<launch><arg name="gripper" default="true"/>
+            <include file="$(find gazebo_ros)/launch/empty_world.launch"/>
+            <include file="$(find arm)/launch/describe.launch">
+            <arg name="gripper" default="$(arg gripper)"/></include></launch>""",
+        describe_dot_launch=describe.replace(
+            '<include file="$(find gazebo_ros)/launch/empty_world.launch"/>', ""
+        ),
+    )
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.file == folder / "launch/sim.launch"
+    assert use.arguments == {"gripper": "true"}
+
+
+def test_xacro_ignores_an_argument_without_a_value(package):
+    """As rosgraph's load_mappings does, and a variable that is not set is empty in roslaunch."""
+    text = ROS1.replace(
+        "user:=$(eval clock())", "extras:=$(optenv CARTWHEEL_NO_SUCH_NAME)\n user:=me"
+    )
+    folder = package(sim_dot_launch=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.arguments == {"gripper": "true", "user": "me"}
+    assert use.unknown == 0
+
+
 def test_launch_files_of_ros2_in_xml(package):
     folder = package(sim_dot_launch_dot_xml=ROS2_XML)
     use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))

@@ -173,8 +173,10 @@ class Facts:
             if assigned and re.fullmatch(r"\w+", name):
                 if not value and index + 1 < len(words) and ":=" not in words[index + 1]:
                     value, skip = words[index + 1], True
-                # Without the space before the next argument, both values are unknown.
-                arguments[name] = UNKNOWN if ":=" in value else value
+                # xacro ignores an argument without a value. Without the space before the next
+                # argument, both values are unknown.
+                if value:
+                    arguments[name] = UNKNOWN if ":=" in value else value
             elif file is None and word.endswith(SUFFIXES):
                 file = Path(word)
         return self.add(file, arguments)

@@ -61,7 +61,7 @@ class _Reader:
             facts.namespace = self._space(node)
         elif tag == "include":
             given = {
-                child.attributes.get("name", ""): self._value(child, "value")
+                child.attributes.get("name", ""): self._given_value(child)
                 for child in node.children
                 if child.tag == "arg" and self._holds(child)
             }
@@ -112,6 +112,10 @@ class _Reader:
             if not self._depth:
                 self._facts.defaults[name] = self._arguments[name]
 
+    def _given_value(self, node: Node) -> str:
+        """The argument for an included file. roslaunch accepts a default as well as a value."""
+        return self._value(node, "value" if "value" in node.attributes else "default")
+
     def _parameter(self, node: Node) -> None:
         facts = self._facts
         if "from" in node.attributes:
@@ -159,7 +163,9 @@ class _Reader:
         if kind in ("find", "find-pkg-share"):
             return self._facts.package(first)
         if kind in ("env", "optenv"):
-            return os.environ.get(first, words[1] if len(words) > 1 else UNKNOWN)
+            # Without a default, a variable that is not set is empty.
+            absent = "" if kind == "optenv" else UNKNOWN
+            return os.environ.get(first, words[1] if len(words) > 1 else absent)
         if kind == "dirname":
             return str(self._path.parent)
         if kind == "command":
