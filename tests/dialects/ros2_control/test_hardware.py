@@ -38,3 +38,26 @@ def test_the_hardware_of_another_gazebo_is_used_if_there_is_no_other():
     robot = load_text(ROBOT.format(systems=system, plugin="gz_ros2_control-system"), file="r.urdf")
     (joint,), _, _ = ros2_control(robot)
     assert joint.commands == ("effort",)
+
+
+@pytest.mark.parametrize("between", ["", "</ros2_control><ros2_control name='b' type='system'>"])
+def test_a_joint_that_is_listed_twice_has_the_interfaces_of_both(between):
+    """As in ros2_control, which exports each interface of each entry."""
+    joint = (
+        '<joint name="shoulder"><command_interface name="{}"/>{}<state_interface name="{}"/></joint>'
+    )
+    hardware = f"<hardware><plugin>{GZ}</plugin></hardware>"
+    gain = '<param name="pos_kp">3</param>'
+    start = '<state_interface name="position"><param name="initial_value">0.3</param></state_interface>'
+    first = joint.format("velocity", gain + start, "velocity")
+    second = joint.format("position", "", "velocity")
+    text = (
+        f"<ros2_control name='a' type='system'>{hardware}{first}"
+        f"{between}{hardware if between else ''}{second}</ros2_control>"
+    )
+    robot = load_text(ROBOT.format(systems=text, plugin="gz_ros2_control-system"), file="r.urdf")
+    (found,), _, _ = ros2_control(robot)
+    assert found.commands == ("velocity", "position")
+    assert found.states == ("position", "velocity")
+    assert found.initial_position == 0.3
+    assert found.gains == {"pos_kp": 3.0}

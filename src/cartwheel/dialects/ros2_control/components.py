@@ -45,7 +45,7 @@ class HardwareComponents:
         self._commands: dict[str, list[str]] = {}
         self._measures: dict[str, list[str]] = {}
         for name, system in self._systems.items():
-            parts = [each.attribute("name") or "" for each in system.find_all("joint")]
+            parts = {each.attribute("name") or "": None for each in system.find_all("joint")}
             sensed = [each.attribute("name") or "" for each in system.find_all("sensor")]
             self._commands[name] = _joined(parts, commands)
             self._measures[name] = _joined([*parts, *sensed], states)

@@ -162,6 +162,7 @@ def ros2_control(
         PluginError: A value is not a number.
     """
     joints: dict[str, JointInterfaces] = {}
+    loaded: dict[str, bool] = {}
     sensors: list[SensorInterfaces] = []
     notes: list[Diagnostic] = []
     # Hardware that the plugin of this Gazebo cannot load is skipped there, so the other's joints
@@ -180,7 +181,11 @@ def ros2_control(
                     )
                 )
                 continue
-            joints[name] = _joint(element, name, notes)
+            found = _joint(element, name, notes)
+            before = joints.get(name)
+            same = before is not None and (hardware_of(system) in loads) is loaded[name]
+            joints[name] = _together(before, found) if before is not None and same else found
+            loaded[name] = hardware_of(system) in loads
         sensors += [_sensor(element) for element in system.find_all("sensor")]
         notes += [
             devices.HARDWARE_NOT_SIMULATED.diagnostic(
@@ -192,6 +197,21 @@ def ros2_control(
             for element in system.find_all("gpio")
         ]
     return list(joints.values()), sensors, notes
+
+
+def _together(one: JointInterfaces, other: JointInterfaces) -> JointInterfaces:
+    """A joint that is listed twice, once with each of its interfaces, as ros2_control exports it."""
+    start = one.initial_position if other.initial_position is None else other.initial_position
+    return JointInterfaces(
+        name=one.name,
+        commands=tuple(dict.fromkeys((*one.commands, *other.commands))),
+        states=tuple(dict.fromkeys((*one.states, *other.states))),
+        initial_position=start,
+        mimic=one.mimic if other.mimic is None else other.mimic,
+        by_pid=other.by_pid or one.by_pid,
+        gains={**one.gains, **other.gains},
+        origin=one.origin,
+    )
 
 
 def _sensor(element: Element) -> SensorInterfaces:
