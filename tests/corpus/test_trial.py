@@ -818,6 +818,41 @@ def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_f
     assert fault.source == "unknown"
 
 
+def test_a_controller_in_a_file_that_the_robot_names_must_start_if_a_launch_file_starts_it(tmp_path):
+    joint = '<joint name="shoulder"><command_interface name="position"/></joint>'
+    group = (
+        "  ros__parameters:\n    type: {0}_controllers/JointGroup{1}Controller\n"
+        "    joints: [{2}]\n"
+    )
+    arm = ARM.format(kind="Position").replace(
+        '"libgazebo_ros_control.so"/>',
+        '"libgazebo_ros2_control.so"><parameters>$(find arm)/a.yaml</parameters></plugin>',
+    )
+    files = {
+        "package.xml": "<package><name>arm</name></package>",
+        "arm.xacro": f'<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">{arm}'
+        '<ros2_control name="x" type="system"><hardware><plugin>gazebo_ros2_control/GazeboSystem'
+        f"</plugin></hardware>{joint}</ros2_control></robot>",
+        "a.yaml": "a:\n" + group.format("position", "Position", "shoulder")
+        + "b:\n" + group.format("velocity", "Velocity", "shoulder"),
+        "a.launch.xml": '<launch><node pkg="robot_state_publisher" exec="robot_state_publisher">'
+        """<param name="robot_description" value="$(command 'xacro $(find-pkg-share arm)/arm.xacro')"/>"""
+        '</node><node pkg="gazebo_ros" exec="spawn_entity.py" args="-topic x"/>'
+        '<node pkg="controller_manager" exec="spawner" args="a b"/></launch>',
+    }  # fmt: skip
+    for name, text in files.items():
+        (tmp_path / "arm" / name).parent.mkdir(exist_ok=True)
+        (tmp_path / "arm" / name).write_text(text)
+    verdict = try_robot(
+        tmp_path / "arm" / "arm.xacro", standing=1.0, launches=launches_near(tmp_path)
+    )
+    assert verdict.controllers == ("a",)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject, fault.code) == ("controller", "b", CONTROLLER_NOT_STARTED)
+    assert "no velocity interface" in fault.reason.message
+    assert fault.source == "file"
+
+
 @pytest.mark.parametrize("tag", ["<rollGain>5</rollGain>", "<motorConstant>1</motorConstant>"])
 def test_an_unsupported_plugin_with_gains_or_motors_is_a_fault(tried, tag):
     fly = f'<gazebo><plugin name="x" filename="libown_thing.so">{tag}</plugin></gazebo>'

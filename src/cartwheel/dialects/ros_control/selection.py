@@ -28,7 +28,12 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import for_robot, name_and_file, read_parameters
-from cartwheel.dialects.ros_control.suggestion import commanding, is_controlled, suggested
+from cartwheel.dialects.ros_control.suggestion import (
+    commanding,
+    is_controlled,
+    lacks_controllers,
+    suggested,
+)
 from cartwheel.errors import CartwheelError, Diagnostic, Origin, PluginError
 
 _SUFFIX = ".sdf"
@@ -118,6 +123,9 @@ def selection(
                 break
     files = tuple(each for each in named or near if _is_complete(each, robot))
     names = starter.spawned if starter is not None and (named or not files) else ()
+    if not files and not names and use is not None and not lacks_controllers(robot):
+        # The robot's own tags name the files.
+        names = use.spawned
     unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
     reported = _undefined(robot, starter or _starter(Path(robot.origin.file), use, launches))
     problems = (*unreadable, *reported)
