@@ -174,6 +174,17 @@ def test_a_robot_without_a_name_is_a_part(folder, tmp_path):
     assert kinds(tmp_path) == {"camera.xacro": "part"}
 
 
+@pytest.mark.parametrize(
+    ("plugin", "found"), [("libgazebo_ros2_control.so", True), ("libgazebo_ros_camera.so", False)]
+)
+def test_a_robot_that_plugins_move_is_one_although_it_has_no_name(folder, plugin, found):
+    """Its test reports the missing name, which Gazebo does not accept either."""
+    tags = LINK.format("base") + f'<gazebo><plugin name="p" filename="{plugin}"/></gazebo>'
+    assert folder(robot_dot_xacro=XACRO.format("", tags)) == ["robot.xacro"] * found
+    whole = XACRO.format(' name="whole"', '<xacro:include filename="robot.xacro"/>')
+    assert folder(whole_dot_xacro=whole) == ["whole.xacro"]
+
+
 def test_a_guessed_description_of_a_launch_file_may_be_a_part(folder, tmp_path):
     folder(
         a_dot_urdf='<robot name="a">' + LINK.format("arm") + "</robot>",

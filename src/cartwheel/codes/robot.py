@@ -225,3 +225,6 @@ WHEEL_SPEED_LIMITED = Code(
     "warning",
     "the velocity limit of a wheel's joint lets the robot hardly drive",
 )
+BASE_FIXED = Code(
+    "CW254", "base-fixed", "warning", "a robot that wheels should drive is fixed to the world"
+)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
 from cartwheel.corpus.faults import Fault, most_severe
@@ -212,6 +213,11 @@ def _measured(
     for topic in verdict.silent:
         reason = _coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
+    if verdict.stand is not None and verdict.stand.fixed and Robot(description, None).drives:
+        for each in findings():
+            if each.code is robot.BASE_FIXED:
+                subject = short_name(str(each.values["plugin"]))
+                yield Fault(test="drive", subject=subject, reason=each)
     pushed = any(drive.follows and drive.turns for drive in verdict.drives)
     for drive in verdict.drives:
         if pushed and not (drive.follows and drive.turns) and is_free(said, drive.topic):

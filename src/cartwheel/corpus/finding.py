@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel.codes.files import XACRO_NAME_UNKNOWN
+from cartwheel.corpus.movers import is_mover
 from cartwheel.corpus.worlds import robots_in_worlds, text_of
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
@@ -31,6 +32,7 @@ _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 _WORLDS = (".world", ".world.xacro", ".world.sdf")
 _ACTIVE = re.compile(r"<(?:plugin|sensor|include)\b")
 """Elements of an SDF model that is not scenery. An included model may contain the others."""
+_PLUGIN = re.compile(r"""<plugin\b[^<>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL)
 _DEFINED = {
     "property": r"""<(?:xacro:)?property\b[^<>]*?\bname\s*=\s*["']{}["']""",
     "macro": r"""<(?:xacro:)?macro\b[^<>]*?\bname\s*=\s*["'](?:xacro:)?{}["']""",
@@ -52,7 +54,7 @@ Kind = Literal["macros", "part", "world", "scenery", "old version"]
 - ``part``: the file is a part of a robot: a description in a launch file includes it; or it is not
   complete, and another file includes it; or it refers to links, macros, properties or arguments
   that another file defines; or it has no link of its own, and its macros attach theirs to a link
-  that does not exist; or its ``<robot>`` has no name.
+  that does not exist; or its ``<robot>`` has no name, and no plugin that moves it.
 - ``world``: the file is a world.
 - ``scenery``: the file is an SDF model without plugins and sensors, such as a house.
 - ``old version``: the file of a model that its ``model.config`` does not choose.
@@ -165,7 +167,7 @@ class _Folder:
                 return "macros"
             return "part" if part or (not launched and self._is_elsewhere(path, error)) else None
         is_part = (part or path.suffix == ".xacro") and (
-            "name" not in root.attributes
+            ("name" not in root.attributes and (part or not _moves(self.texts[path])))
             or self._hangs(path, root)
             or _only_attaches(self.texts[path], root)
         )
@@ -217,6 +219,11 @@ def _missing_parents(root: Node) -> set[str]:
         if each.tag == "parent"
     }
     return parents - links - {"", "world"}
+
+
+def _moves(text: str) -> bool:
+    """Whether a description contains a plugin that moves a robot or its joints."""
+    return any(is_mover(name) for name in _PLUGIN.findall(text))
 
 
 def _only_attaches(text: str, root: Node) -> bool:

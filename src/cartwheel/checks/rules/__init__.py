@@ -49,6 +49,7 @@ from cartwheel.checks.rules.robot import (
 )
 from cartwheel.checks.rules.tags import ignored_by_gazebo, misplaced_tags
 from cartwheel.checks.rules.wheels import (
+    fixed_base,
     wheel_axes,
     wheel_base,
     wheel_diameter,
@@ -75,6 +76,7 @@ RULES: tuple[Rule, ...] = tuple(
         masses,
         light_roots,
         drive_joints,
+        fixed_base,
         wheel_sides,
         wheel_speed,
         wheel_axes,

@@ -97,10 +97,9 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
         ratio = turn_ratio(one.robot, left, right, axle, one.used / 2)
         if ratio is None or ratio == 0 or abs(ratio - 1.0) <= _LEAST_SKID:
             continue
-        wanted = one.used / ratio
+        wanted = one.value / ratio
         yield robot_codes.SKID_STEERING.diagnostic(
-            message=f"the wheels slide when the robot turns, so it turns at {ratio:.0%} of the "
-            "commanded rate",
+            message=f"the wheels slide when the robot turns, {_effect(one, ratio)}",
             values={
                 "tag": one.label,
                 "joint": one.first[0],
@@ -112,6 +111,15 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
             hint=f"A wheel separation of {wanted:.4g} m compensates for this.",
             mark=one.mark,
         )
+
+
+def _effect(one: Stated, ratio: float) -> str:
+    """What follows from wheels that slide, with the stated separation."""
+    rate = f"so it turns at {ratio:.0%} of the commanded rate"
+    if ratio <= 1.0:
+        return rate
+    times = f", multiplied by {one.factor:.4g}," if one.factor != 1.0 else ""
+    return f"but {one.label} of {one.value:.4g} m{times} compensates for more than that, {rate}"
 
 
 def _with_followers(one: Stated, side: Sequence[str]) -> list[Joint]:

@@ -1,0 +1,54 @@
+"""Drives of robots that are fixed to the world."""
+
+import pytest
+from tests.checks.test_steering_and_casters import BODY, REAR
+from tests.checks.test_wheel_speed import CLASSIC
+
+from cartwheel.checks.checking import check
+from cartwheel.codes.robot import BASE_FIXED
+
+WORLD = '<link name="world"/>'
+HOLD = '<joint name="hold" type="{}"><parent link="{}"/><child link="{}"/></joint>'
+FOOT = '<link name="foot"/>'
+
+
+@pytest.mark.parametrize(
+    ("held", "reported"),
+    [
+        ("", False),
+        (WORLD + HOLD.format("fixed", "world", "base"), True),
+        (
+            WORLD
+            + FOOT
+            + HOLD.format("fixed", "world", "foot")
+            + HOLD.replace("hold", "on").format("fixed", "foot", "base"),
+            True,
+        ),
+        (WORLD + HOLD.format("prismatic", "world", "base"), False),
+        (FOOT + HOLD.format("fixed", "foot", "base"), False),
+    ],
+)
+def test_a_drive_of_a_robot_that_the_world_holds_is_reported(tmp_path, held, reported):
+    path = tmp_path / "cart.urdf"
+    path.write_text(f'<robot name="cart">{BODY.format(more="")}{REAR}{held}{CLASSIC}</robot>')
+    found = [each for each in check(path).findings if each.code is BASE_FIXED]
+    assert len(found) == reported
+    for each in found:
+        assert each.values == {"plugin": "libgazebo_ros_diff_drive.so", "joint": "hold"}
+        assert each.severity == "warning"
+
+
+@pytest.mark.parametrize("static", [True, False])
+def test_a_drive_of_a_static_model_is_reported(tmp_path, static):
+    wheel = """<link name="{0}"><pose>0 {1} 0.1 0 0 0</pose><collision name="c"><geometry><sphere>
+      <radius>0.1</radius></sphere></geometry></collision></link><joint name="{0}_joint" type="revolute">
+      <parent>base</parent><child>{0}</child><axis><xyz>0 1 0</xyz></axis></joint>"""
+    path = tmp_path / "model.sdf"
+    path.write_text(
+        f"""<sdf version="1.9"><model name="cart"><static>{static}</static>
+        <link name="base"><pose>0 0 0.2 0 0 0</pose></link>
+        {wheel.format("left", 0.2)}{wheel.format("right", -0.2)}
+        {CLASSIC.removeprefix("<gazebo>").removesuffix("</gazebo>")}</model></sdf>"""
+    )
+    found = [each for each in check(path).findings if each.code is BASE_FIXED]
+    assert [each.values for each in found] == [{"plugin": "libgazebo_ros_diff_drive.so"}] * static
