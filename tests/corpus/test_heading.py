@@ -53,6 +53,17 @@ def test_a_caster_that_rolls_to_the_side_does_not_change_where_the_driven_wheels
     assert heading(robot(*wheels, caster), speeds) == pytest.approx(FORWARD)
 
 
+@pytest.mark.parametrize(
+    ("left", "axis", "x"), [(0.2, 1, 1), (-0.2, -1, -1), (0.2, -1, 1), (-0.2, 1, 1)]
+)
+def test_a_robot_whose_sides_and_axes_are_mirrored_faces_backwards(left, axis, x):
+    """It turns as commanded. With one of both alone, it turns or drives in the wrong direction."""
+    wheels = [("left", left), ("right", -left)]
+    found = robot(*((name, f"0 {y} -0.05", f"0 {axis} 0") for name, y in wheels), tags=DRIVE)
+    speeds = {"left_joint": 2.0, "right_joint": 2.0}
+    assert heading(found, speeds) == pytest.approx((x, 0.0))
+
+
 def test_mirrored_wheels_roll_in_one_direction():
     wheels = [
         (f"{end}_{side}", f"{x} {y} -0.05", f"0 {axis} 0")

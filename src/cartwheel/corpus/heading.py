@@ -7,7 +7,16 @@ import math
 from collections.abc import Iterable, Mapping
 
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_place
+from cartwheel.checks.wheels import (
+    CAMBER,
+    axis_senses,
+    faces_backwards,
+    lowest,
+    placed_pair,
+    wheel_axis,
+    wheel_links,
+    wheel_place,
+)
 from cartwheel.description.solids import Floats
 
 FORWARD = (1.0, 0.0)
@@ -25,10 +34,12 @@ spinning lidar is no wheel."""
 def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
     """The direction in which parallel wheels roll, a unit vector in the robot's frame.
 
-    It points toward +x, or, for wheels with an axis along x, away from the side on which the left
-    wheel would be on the right, or, if that is unknown, in the direction in which the wheels roll.
-    The driven wheels count before those that only roll, such as a caster. Without parallel wheels
-    on the ground it is x, as in REP 103.
+    It points toward +x, or toward -x if the robot faces backwards: its left wheels are on the
+    right, and all axes point to the right, so that it drives backwards and turns as commanded. For
+    wheels with an axis along x, it points away from the side on which the left wheel would be on
+    the right, or, if that is unknown, in the direction in which the wheels roll. The driven wheels
+    count before those that only roll, such as a caster. Without parallel wheels on the ground it is
+    x, as in REP 103.
 
     Args:
         robot: The robot.
@@ -42,10 +53,26 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
         return FORWARD
     forward = (axle[1], -axle[0])
     if abs(forward[0]) > 0.1:
-        sign = math.copysign(1.0, forward[0])
+        sign = math.copysign(1.0, -forward[0] if _faces_backwards(robot) else forward[0])
     else:
         sign = _side(robot, forward) or _rolling(robot, speeds, forward)
     return sign * forward[0], sign * forward[1]
+
+
+def _faces_backwards(robot: Robot) -> bool:
+    """Whether the driven wheels show that the robot's front is at -x."""
+    pairs = [
+        pair
+        for left, right in robot.sides
+        for names in zip(left, right, strict=False)
+        if (pair := placed_pair(robot, *names)) is not None
+    ]
+    return bool(pairs) and all(
+        bool(senses := axis_senses(robot, *pair))
+        and max(senses) < -CAMBER
+        and faces_backwards(robot, *pair)
+        for pair in pairs
+    )
 
 
 def rolling(robot: Robot, names: Iterable[str]) -> dict[str, float]:
