@@ -542,6 +542,24 @@ def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tm
         report = bench.report(car(), controller_files=[path])
         (finding,) = [each for each in report.findings if each.code is SKID_STEERING]
         assert finding.values["ratio"] == pytest.approx(ratio, rel=1e-6)
+        # The separation to write: the controller multiplies it again.
+        fits = float(re.search(r"separation of ([\d.]+) m", finding.hint)[1])
+        path.write_text(
+            f"{text.replace(f'wheel_separation: {TRACK}', f'wheel_separation: {fits}')}"
+            f"    wheel_separation_multiplier: {multiplier}\n"
+        )
+        report = bench.report(car(), controller_files=[path])
+        assert not [each for each in report.findings if each.code is SKID_STEERING]
+
+
+def test_a_separation_that_is_too_large_for_wheels_that_slide_is_named(bench):
+    """Wheels that slide alone turn a robot more slowly."""
+    fits = TRACK * (1 + (BASE / TRACK) ** 2)
+    wide = {**SKID, "wheelSeparation": 1.2 * fits}
+    report = bench.report(car(plugin("libgazebo_ros_skid_steer_drive.so", **wide)))
+    (finding,) = [each for each in report.findings if each.code is SKID_STEERING]
+    assert f"but <wheelSeparation> of {1.2 * fits:.4g} m compensates for more" in finding.message
+    assert "at 120% of the commanded rate" in finding.message
 
 
 def test_the_turn_rate_of_a_skid_steered_robot_is_that_at_which_friction_torques_balance(bench):
