@@ -41,7 +41,8 @@ def test_a_drive_of_a_robot_that_the_world_holds_is_reported(tmp_path, held, rep
 @pytest.mark.parametrize("static", [True, False])
 def test_a_drive_of_a_static_model_is_reported(tmp_path, static):
     wheel = """<link name="{0}"><pose>0 {1} 0.1 0 0 0</pose><collision name="c"><geometry><sphere>
-      <radius>0.1</radius></sphere></geometry></collision></link><joint name="{0}_joint" type="revolute">
+      <radius>0.1</radius></sphere></geometry></collision></link>
+      <joint name="{0}_joint" type="revolute">
       <parent>base</parent><child>{0}</child><axis><xyz>0 1 0</xyz></axis></joint>"""
     path = tmp_path / "model.sdf"
     path.write_text(

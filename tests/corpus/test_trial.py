@@ -20,6 +20,7 @@ from cartwheel.codes.devices import (
 )
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK, INCLUDE_ABSENT, LINK_RECONNECTED
 from cartwheel.codes.robot import (
+    BASE_FIXED,
     BODY_ON_GROUND,
     DAMPING_TOO_HIGH,
     DRIVES_APART,
@@ -487,6 +488,18 @@ def test_what_the_world_holds_is_fixed(tried):
     assert verdict.drives == ()
 
 
+def test_a_cart_that_the_world_holds_cannot_drive(tried):
+    hold = '<link name="world"/><joint name="hold" type="fixed"><parent link="world"/>{}</joint>'
+    verdict = tried(cart(0.1), hold.format('<child link="base"/>'))
+    assert verdict.stand.state == "fixed"
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject) == ("drive", "gazebo_ros_diff_drive")
+    assert fault.code is BASE_FIXED
+    assert fault.source == "file"
+    assert verdict.should_move
+    assert not verdict.moves
+
+
 @pytest.mark.parametrize("name", ["arm.yaml", "config.yml"])
 def test_the_controllers_beside_a_robot_take_its_joint_where_that_is_set(tmp_path, tried, name):
     (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
@@ -818,11 +831,10 @@ def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_f
     assert fault.source == "unknown"
 
 
-def test_a_controller_in_a_file_that_the_robot_names_must_start_if_a_launch_file_starts_it(tmp_path):
+def test_a_controller_that_a_launch_file_starts_must_start_if_the_robot_names_its_file(tmp_path):
     joint = '<joint name="shoulder"><command_interface name="position"/></joint>'
     group = (
-        "  ros__parameters:\n    type: {0}_controllers/JointGroup{1}Controller\n"
-        "    joints: [{2}]\n"
+        "  ros__parameters:\n    type: {0}_controllers/JointGroup{1}Controller\n    joints: [{2}]\n"
     )
     arm = ARM.format(kind="Position").replace(
         '"libgazebo_ros_control.so"/>',
@@ -836,7 +848,8 @@ def test_a_controller_in_a_file_that_the_robot_names_must_start_if_a_launch_file
         "a.yaml": "a:\n" + group.format("position", "Position", "shoulder")
         + "b:\n" + group.format("velocity", "Velocity", "shoulder"),
         "a.launch.xml": '<launch><node pkg="robot_state_publisher" exec="robot_state_publisher">'
-        """<param name="robot_description" value="$(command 'xacro $(find-pkg-share arm)/arm.xacro')"/>"""
+        '<param name="robot_description" '
+        """value="$(command 'xacro $(find-pkg-share arm)/arm.xacro')"/>"""
         '</node><node pkg="gazebo_ros" exec="spawn_entity.py" args="-topic x"/>'
         '<node pkg="controller_manager" exec="spawner" args="a b"/></launch>',
     }  # fmt: skip

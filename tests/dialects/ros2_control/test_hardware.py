@@ -44,11 +44,14 @@ def test_the_hardware_of_another_gazebo_is_used_if_there_is_no_other():
 def test_a_joint_that_is_listed_twice_has_the_interfaces_of_both(between):
     """As in ros2_control, which exports each interface of each entry."""
     joint = (
-        '<joint name="shoulder"><command_interface name="{}"/>{}<state_interface name="{}"/></joint>'
+        '<joint name="shoulder"><command_interface name="{}"/>{}'
+        '<state_interface name="{}"/></joint>'
     )
     hardware = f"<hardware><plugin>{GZ}</plugin></hardware>"
     gain = '<param name="pos_kp">3</param>'
-    start = '<state_interface name="position"><param name="initial_value">0.3</param></state_interface>'
+    start = (
+        '<state_interface name="position"><param name="initial_value">0.3</param></state_interface>'
+    )
     first = joint.format("velocity", gain + start, "velocity")
     second = joint.format("position", "", "velocity")
     text = (

@@ -200,7 +200,7 @@ def ros2_control(
 
 
 def _together(one: JointInterfaces, other: JointInterfaces) -> JointInterfaces:
-    """A joint that is listed twice, once with each of its interfaces, as ros2_control exports it."""
+    """A joint that is listed twice. ros2_control exports the interfaces of both entries."""
     start = one.initial_position if other.initial_position is None else other.initial_position
     return JointInterfaces(
         name=one.name,
