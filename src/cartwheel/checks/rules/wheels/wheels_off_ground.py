@@ -6,11 +6,17 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from cartwheel.checks.resting import Surfaces, rest_of
+from cartwheel.checks.resting import Rest, Surfaces, rest_of
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links, wheel_radius
+from cartwheel.checks.wheels import (
+    lowest,
+    wheel_joints,
+    wheel_links,
+    wheel_place,
+    wheel_radius,
+)
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint, Link
 from cartwheel.errors import Diagnostic
@@ -137,20 +143,41 @@ def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
     limit = _SINKS + _softness(robot, bearing)
     for pair in robot.sides:
         sides = [
-            [_wheel(robot.joints[name], below) for name in side if name in names] for side in pair
+            [
+                (joint, _wheel(joint, below))
+                for joint in (robot.joints[name] for name in side if name in names)
+            ]
+            for side in pair
         ]
-        wheels = {name for side in sides for wheel in side for name in wheel}
+        wheels = {name for side in sides for _, wheel in side for name in wheel}
         if not wheels <= set(rigid):
             continue
-        raised = [
-            wheel
+        heights = [
+            min((_gap(robot, rest, names, joint) for joint, names in side), default=0.0)
             for side in sides
-            if (rest.height(robot, [name for wheel in side for name in wheel]) or 0.0) > limit
-            for wheel in side
+        ]
+        raised = [
+            names
+            for side, height in zip(sides, heights, strict=True)
+            if height > limit
+            for _, names in side
         ]
         if raised:
             others = [name for name in rigid if name not in wheels]
             yield from _report(robot, others, bearing, [wheel[0] for wheel in raised], wheels)
+
+
+def _gap(robot: Robot, rest: Rest, links: list[str], joint: Joint) -> float:
+    """Height of a wheel above the plane where its radius is largest, m.
+
+    The wheel of a mesh has corners, and may start with the middle of an edge down.
+    """
+    height = rest.height(robot, links) or 0.0
+    radius = wheel_radius(robot, joint)
+    if radius is None:
+        return height
+    center = wheel_place(robot, joint).position
+    return min(height, float(rest.normal @ np.array(center)) - rest.offset - radius)
 
 
 def _report(
