@@ -294,6 +294,56 @@ def test_a_ball_on_a_joint_that_cannot_roll_forward_is_a_caster(make, axis):
     assert max(pitches) - min(pitches) < 0.02
 
 
+CASTERS = """<robot name="cart"><link name="base"><inertial><origin xyz="0 0 0.02"/>
+  <mass value="16"/><inertia ixx="0.34" iyy="0.6" izz="0.93"/></inertial></link>{parts}
+<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+  <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>
+  <wheel_separation>0.52</wheel_separation><wheel_diameter>0.2</wheel_diameter></plugin></gazebo>
+</robot>"""
+HEAVY_WHEEL = """<link name="{side}"><inertial><mass value="1.3"/>
+  <inertia ixx="0.004" iyy="0.0075" izz="0.004"/></inertial><collision>
+  <origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.1" length="0.03"/></geometry>
+  </collision></link>
+<joint name="{side}_joint" type="continuous"><origin xyz="0 {y} 0.055"/><axis xyz="0 1 0"/>
+  <parent link="base"/><child link="{side}"/></joint>"""
+SWIVEL = """<link name="fork_{i}"><inertial><mass value="0.007"/>
+  <inertia ixx="1.4e-6" iyy="1.4e-6" izz="1.3e-7"/></inertial></link>
+<joint name="swivel_{i}" type="continuous"><origin xyz="{at} 0" rpy="0 0 {yaw}"/>
+  <axis xyz="0 0 1"/><parent link="base"/><child link="fork_{i}"/></joint>
+<link name="roll_{i}"><inertial><mass value="0.004"/>
+  <inertia ixx="2.5e-7" iyy="4.8e-7" izz="2.5e-7"/></inertial><collision>
+  <origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.015" length="0.01"/></geometry>
+  </collision></link>
+<joint name="roll_{i}" type="continuous"><origin xyz="-{trail} 0 -0.03"/><axis xyz="0 1 0"/>
+  <parent link="fork_{i}"/><child link="roll_{i}"/></joint>"""
+PLACES = [("0.3 0.2", 0.3), ("0.3 -0.2", 0.3), ("-0.3 0.2", -1.0), ("-0.3 -0.2", -2.0)]
+
+
+@pytest.mark.parametrize("trail", [0.0, 0.005])
+@pytest.mark.parametrize(("forward", "turn"), [(0.2, 0.0), (0.0, 0.4)])
+def test_casters_below_their_swivel_axis_neither_hop_nor_brake_their_robot(
+    make, trail, forward, turn
+):
+    """They carry more than half the weight at μ = 1, and friction does not turn them ahead.
+
+    They slide across their wheels only, at angles at which the driven wheels are stronger.
+    """
+    parts = [HEAVY_WHEEL.format(side=side, y=y) for side, y in (("left", 0.26), ("right", -0.26))]
+    parts += [SWIVEL.format(i=i, at=at, yaw=yaw, trail=trail) for i, (at, yaw) in enumerate(PLACES)]
+    robot = load_text(CASTERS.format(parts="".join(parts)), file="cart.urdf")
+    world = stand(make, robot, pose=Pose((0, 0, 0.045)))
+    world.publish("/cmd_vel", linear_x=forward, angular_z=turn)
+    world.run(2.0)
+    robot = world.model("cart")
+    before, heights = robot.pose, []
+    for _ in range(20):
+        world.run(0.1)
+        heights.append(robot.pose.z)
+    assert math.dist(robot.pose.position, before.position) / 2.0 == pytest.approx(forward, abs=2e-3)
+    assert (robot.pose.yaw - before.yaw) / 2.0 == pytest.approx(turn, abs=4e-3)
+    assert max(heights) - min(heights) < 1e-4
+
+
 @pytest.mark.parametrize(("limit", "round_"), [(1000.0, True), (3.0, False)])
 def test_limits_many_turns_away_leave_a_wheel_a_wheel(make, limit, round_):
     turning = f'type="revolute"><limit lower="-{limit}" upper="{limit}" effort="9" velocity="99"/>'

@@ -29,8 +29,8 @@ Addition = Literal[
 
 - ``chain-drag``: drag on the hinges of chains, which removes the energy that the integration adds.
 - ``round-tyres``: wheels collide as ellipsoids.
-- ``soft-sliding``: friction stops sliding bodies within 30 ms, the wheels of skid steers within
-  0.12 s, and dragged casters within 0.4 s.
+- ``soft-sliding``: friction stops sliding bodies within 30 ms, the wheels of skid steers and of
+  casters without trail within 0.12 s, and dragged casters within 0.4 s.
 - ``limited-friction``: parts that a base must slide on the ground have a largest coefficient.
 - ``minimum-inertia``: moments of inertia that are 0 or almost 0 are raised.
 - ``raised-efforts``: a joint with position commands may exceed an effort limit with which it could

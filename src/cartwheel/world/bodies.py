@@ -57,6 +57,8 @@ class _Branch:
     """The parent body's axle, if the parent is a wheel."""
     steered: Steering = "not"
     """Whether the joints above it rotate about the vertical."""
+    pivot: Vec3 | None = None
+    """A point on the last of these joints' axes in the model, m; None if it has no single axis."""
     driven: bool = False
     """Whether a motor turns the axle."""
     carried: bool = False
@@ -176,7 +178,10 @@ class BodyBuilder:
         driven = branch.driven if held else joint is not None and joint.name in entry.motors
         self._fill(entry, body, replace(branch, driven=driven), axle, moves=moves, trunk=trunk)
         rolling = axle is not None and not _is_upright(link, axle)
-        steered = branch.steered
+        steered, pivot = branch.steered, branch.pivot
+        if joint is not None and _steers(link, joint):
+            turns = joint.type in ("revolute", "continuous")
+            pivot = (link.pose @ joint.pose).position if turns else None
         if joint is not None and _steers(link, joint) and steered != "by motors":
             steered = "by motors" if joint.name in entry.motors else "freely"
         return replace(
@@ -186,6 +191,7 @@ class BodyBuilder:
             axle=axle,
             trunk=trunk,
             steered=steered,
+            pivot=pivot,
             driven=driven,
             carried=branch.carried or rolling,
         )
@@ -219,6 +225,7 @@ class BodyBuilder:
                     there,
                     along,
                     steered=branch.steered,
+                    pivot=branch.pivot,
                     driven=branch.driven,
                     carried=branch.carried,
                 )

@@ -44,8 +44,8 @@ TRAILING_TIME_CONSTANT = 0.4
 The wheels prevent creep, and friction that stops such a part at once would throw it up.
 """
 SCRUBBING_TIME_CONSTANT = 0.12
-"""The same for tracks, and for wheels that slide sideways when their robot turns, such as those of
-skid steers, s.
+"""The same for tracks, and for wheels that slide sideways, such as those of skid steers in a turn,
+and those of casters without trail, s.
 """
 SCRUBBING_IMPEDANCE = (0.2, 0.95, 0.0005, 0.5, 2.0)
 """MuJoCo's solimp for both, which rises from 0.2 at the surface to 0.95 at a depth of 0.5 mm.

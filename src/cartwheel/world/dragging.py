@@ -131,8 +131,12 @@ def _trails(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:
 
 
 def _scrubs(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:
-    """Whether a wheel slides sideways in a turn. Mecanum wheels roll in each direction."""
+    """Whether a wheel slides sideways in a turn, or in each motion, as a caster without trail does.
+    Mecanum wheels roll in each direction.
+    """
     mu1, mu2 = contact.coefficients(surface.surface)
     if surface.tread is None or (surface.surface.fdir1_frame is not None and mu1 != mu2):
         return False
+    if surface.tread.follows_nothing and any(each.driven for each in treads):
+        return True
     return any(map(surface.tread.scrubs_beside, treads))

@@ -39,6 +39,8 @@ _CENTRED, _ALONG = 0.1, 0.999
 """Maximum offset from the axis, relative to a cylinder's radius, and minimum cosine between both
 axes. Slightly misaligned wheels are wheels, and stay misaligned.
 """
+_TRAIL = 0.05
+"""Minimum trail of a caster, relative to its radius, with which it follows the motion."""
 _PARALLEL = 0.9
 """Minimum cosine between the axles of wheels that roll in the same direction."""
 _LEVEL = 0.5
@@ -101,6 +103,8 @@ class Tread:
     """Whether a motor turns it."""
     carried: bool = False
     """Whether it is mounted on another wheel, like the rollers of a mecanum wheel."""
+    trail: float = math.inf
+    """Horizontal distance between the centre and the axis that steers it; infinite without one."""
 
     @property
     def bottom(self) -> float:
@@ -113,6 +117,11 @@ class Tread:
         lengths = math.hypot(*u) * math.hypot(*v)
         return abs(u[0] * v[0] + u[1] * v[1]) > _PARALLEL * lengths
 
+    @property
+    def follows_nothing(self) -> bool:
+        """Whether it is a caster below its swivel axis, which friction does not turn."""
+        return self.steered == "freely" and not self.driven and self.trail < _TRAIL * self.radius
+
     def scrubs_beside(self, other: Tread) -> bool:
         """Whether one of two wheels must slip sideways in a turn: their axles are not in line."""
         if self.steered != "not" or other.steered != "not":
@@ -123,7 +132,14 @@ class Tread:
 
 
 def tread_of(
-    shape: Shape, pose: Pose, axle: Axle, *, steered: Steering, driven: bool, carried: bool
+    shape: Shape,
+    pose: Pose,
+    axle: Axle,
+    *,
+    steered: Steering,
+    pivot: Vec3 | None,
+    driven: bool,
+    carried: bool,
 ) -> Tread | None:
     """A wheel's tread; None for rotating bodies that do not roll.
 
@@ -132,6 +148,7 @@ def tread_of(
         pose: Pose in the model, in which the axle is also given.
         axle: The axle.
         steered: Whether joints above the wheel turn its axle about the vertical.
+        pivot: A point on the axis of the last of these joints in the model; None without one.
         driven: Whether a motor turns the wheel.
         carried: Whether the wheel is mounted on another one.
     """
@@ -144,7 +161,9 @@ def tread_of(
             return None
     if is_upright(axle.axis):
         return None
-    return Tread(pose.position, radius, axle.axis, steered, driven, carried)
+    x, y, _ = pose.position
+    trail = math.inf if pivot is None else math.hypot(x - pivot[0], y - pivot[1])
+    return Tread(pose.position, radius, axle.axis, steered, driven, carried, trail)
 
 
 def is_upright(axis: Vec3) -> bool:
