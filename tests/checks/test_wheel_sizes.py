@@ -543,7 +543,7 @@ def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tm
         (finding,) = [each for each in report.findings if each.code is SKID_STEERING]
         assert finding.values["ratio"] == pytest.approx(ratio, rel=1e-6)
         # The separation to write: the controller multiplies it again.
-        fits = float(re.search(r"separation of ([\d.]+) m", finding.hint)[1])
+        fits = finding.values["fits"]
         path.write_text(
             f"{text.replace(f'wheel_separation: {TRACK}', f'wheel_separation: {fits}')}"
             f"    wheel_separation_multiplier: {multiplier}\n"
@@ -552,6 +552,7 @@ def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tm
         assert not [each for each in report.findings if each.code is SKID_STEERING]
 
 
+@pytest.mark.wording
 def test_a_separation_that_is_too_large_for_wheels_that_slide_is_named(bench):
     """Wheels that slide alone turn a robot more slowly."""
     fits = TRACK * (1 + (BASE / TRACK) ** 2)

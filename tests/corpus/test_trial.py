@@ -14,6 +14,7 @@ from cartwheel.api.motion import Twist
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.devices import (
     CONTROLLER_GAINS_MISSING,
+    CONTROLLER_INTERFACE_MISMATCH,
     CONTROLLER_UNDAMPED,
     CONTROLLERS_NOT_FOUND,
     PLUGIN_UNKNOWN,
@@ -862,7 +863,7 @@ def test_a_controller_that_a_launch_file_starts_must_start_if_the_robot_names_it
     assert verdict.controllers == ("a",)
     (fault,) = verdict.faults
     assert (fault.test, fault.subject, fault.code) == ("controller", "b", CONTROLLER_NOT_STARTED)
-    assert "no velocity interface" in fault.reason.message
+    assert fault.reason.values["cause"] == CONTROLLER_INTERFACE_MISMATCH.number
     assert fault.source == "file"
 
 

@@ -105,6 +105,7 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
                 "joint": one.first[0],
                 "ratio": ratio,
                 "stated": one.value,
+                "fits": wanted,
                 "rolling": one.used / mean_between(one, beside=True),
             },
             origin=one.origin,
