@@ -23,6 +23,7 @@ from cartwheel.geometry import Pose, Vec3, rotate
 from cartwheel.world import contact, joints
 from cartwheel.world.actuation import add_requested
 from cartwheel.world.additions import Added, Addition
+from cartwheel.world.balance import stands_on_width
 from cartwheel.world.entry import SHIFT, TURN, TYRE, ModelEntry, part_name, scoped
 from cartwheel.world.inertials import set_inertial
 from cartwheel.world.lights import add_light
@@ -94,6 +95,8 @@ class BodyBuilder:
         """What was added to the descriptions."""
         self.surfaces: list[contact.BuiltSurface] = []
         """All collision geoms with their contact properties."""
+        self._wide = False
+        """Whether the model stands by the width of its tyres, so that they are not rounded."""
         self.geoms: dict[str, Any] = {}
         """These geoms in the spec, by name."""
 
@@ -117,6 +120,7 @@ class BodyBuilder:
         bodies: dict[str, Any] = {}
         links = {link.name: link for link in description.links}
         senses = bool(description.plugins) or any(link.sensors for link in description.links)
+        self._wide = self._collisions and stands_on_width(description)
 
         for link in description.links:
             if link.name in inbound and inbound[link.name].parent != "world":
@@ -221,8 +225,7 @@ class BodyBuilder:
             if axle is not None:
                 along = axle.seen_from(link.pose.inverse())
                 tread = tread_of(
-                    shape,
-                    there,
+                    *self._tread(link, collision, axle, (shape, there)),
                     along,
                     steered=branch.steered,
                     pivot=branch.pivot,
@@ -289,13 +292,22 @@ class BodyBuilder:
         self, entry: ModelEntry, link: Link, collision: Collision, axle: Axle | None
     ) -> tuple[Shape, Pose]:
         """The shape and pose of a collision: a wheel is an ellipsoid."""
-        if "round-tyres" in self._without:
+        if self._wide or "round-tyres" in self._without:
             return collision.shape, collision.pose
         shape, place = tyre(collision, axle)
         if isinstance(shape, Ellipsoid) and shape is not collision.shape:
             name = scoped(link.name, collision.name)
             self._note("round-tyres", entry, name, 2 * min(shape.radii), collision.origin)
         return shape, place
+
+    def _tread(
+        self, link: Link, collision: Collision, axle: Axle, built: tuple[Shape, Pose]
+    ) -> tuple[Shape, Pose]:
+        """The shape and pose in the model of which the tread is taken: it rolls as it would round."""
+        if not self._wide:
+            return built
+        shape, place = tyre(collision, axle)
+        return shape, link.pose @ place
 
     def _set_inertial(
         self, entry: ModelEntry, body: Any, link: str, inertial: Inertial, *, moves: bool
