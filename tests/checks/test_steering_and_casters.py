@@ -70,6 +70,34 @@ def test_a_steering_axis_that_points_down_is_reported(tmp_path, rpy, axis, meant
     assert finding.instead == meant
 
 
+@pytest.mark.parametrize(("axis", "meant"), [("0 0 1", 'xyz="0 0 -1"'), ("0 0 -1", None)])
+def test_a_steering_axis_behind_the_fixed_wheels_must_point_down(tmp_path, axis, meant):
+    text = tricycle("0 0 0", axis).replace('xyz="0.2 0 0"', 'xyz="-0.5 0 0"')
+    findings = found(tmp_path, text, STEERING_REVERSED)
+    assert [each.instead for each in findings] == ([] if meant is None else [meant])
+
+
+@pytest.mark.parametrize(("axis", "wrong"), [("0 0 1", True), ("0 0 -1", False)])
+def test_a_car_that_faces_backward_steers_behind(tmp_path, axis, wrong):
+    """Its left wheels are at negative y, and all roll along negative x."""
+    forks = "".join(
+        FORK.format(name=name, place=f"0.2 {y} 0", rpy="0 0 0", axis=axis)
+        + WHEEL.format(name=f"{name}_wheel", parent=name, place="0 0 0")
+        for name, y in (("one", -0.15), ("two", 0.15))
+    )
+    plugin = (
+        '<gazebo><plugin name="drive" filename="gz-sim-ackermann-steering-system">'
+        "<left_joint>right_joint</left_joint><right_joint>left_joint</right_joint>"
+        "<left_steering_joint>one_joint</left_steering_joint>"
+        "<right_steering_joint>two_joint</right_steering_joint></plugin></gazebo>"
+    )
+    text = (BODY.format(more="") + REAR + forks + plugin).replace('"0 1 0"', '"0 -1 0"')
+    findings = found(tmp_path, text, STEERING_REVERSED)
+    assert {each.values["joint"] for each in findings} == (
+        {"one_joint", "two_joint"} if wrong else set()
+    )
+
+
 def test_both_steering_joints_of_a_car_are_examined(tmp_path):
     forks = "".join(
         FORK.format(name=name, place=f"0.2 {y} 0", rpy="0 0 0", axis=axis)

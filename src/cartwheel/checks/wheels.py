@@ -138,14 +138,7 @@ def passive_axle(robot: Robot, steering: Sequence[str]) -> tuple[str, ...]:
 
     They are mounted on the body. Empty if there are none, or if several axles are possible.
     """
-    found = [
-        joint
-        for joint in _rolling(robot)
-        if joint.name not in steering
-        and robot.rigid_root(joint.parent) == robot.rigid_root(robot.description.canonical_link)
-        and is_across(robot, joint)
-        and wheel_radius(robot, joint) is not None
-    ]
+    found = unsteered_wheels(robot, steering)
     places = np.array([wheel_place(robot, joint).position for joint in found])
     names = tuple(joint.name for joint in found)
     if len(names) < 2:
@@ -154,6 +147,18 @@ def passive_axle(robot: Robot, steering: Sequence[str]) -> tuple[str, ...]:
     gaps = places - places[0]
     off = np.linalg.norm(gaps - np.outer(gaps @ axle, axle), axis=1)
     return names if float(off.max()) <= _BESIDE * float(np.ptp(gaps @ axle)) else ()
+
+
+def unsteered_wheels(robot: Robot, steering: Sequence[str]) -> list[Joint]:
+    """Joints of the wheels on the body, apart from those of steering joints."""
+    return [
+        joint
+        for joint in _rolling(robot)
+        if joint.name not in steering
+        and robot.rigid_root(joint.parent) == robot.rigid_root(robot.description.canonical_link)
+        and is_across(robot, joint)
+        and wheel_radius(robot, joint) is not None
+    ]
 
 
 def wheel_axis(robot: Robot, joint: Joint) -> Floats:

@@ -77,11 +77,11 @@ def four_wheels(*, steered=False):
 class Car:
     """A robot with one drive, ``base``, that a test commands."""
 
-    def __init__(self, make, folder, wheels, topic, tags="", **settings):
+    def __init__(self, make, folder, wheels, topic, tags="", edit=str, **settings):
         file = folder / "drive.yaml"
         file.write_text(yaml.safe_dump(ros2_parameters(base=settings)))
         robot = folder / "car.urdf"
-        robot.write_text(car(wheels, ros2_plugin(file), file.read_text(), tags))
+        robot.write_text(edit(car(wheels, ros2_plugin(file), file.read_text(), tags)))
         self.topic = topic
         self.world = make.world()
         self.model = self.world.spawn(robot, z=RADIUS)

@@ -41,6 +41,8 @@ class JointActuatorConfig:
     joint follows it regardless of its load, up to `strength`."""
     led: bool = False
     """Whether the joint follows another joint. It is then not held while it has no command."""
+    idles: bool = False
+    """Whether a joint with velocity commands turns freely while it has no command."""
     overruns: bool = False
     """Whether velocity commands may exceed the velocity limit, until a program changes it."""
     yields: bool = False
@@ -82,7 +84,7 @@ class JointActuator:
         self._commands = config.commands
         self._motor: MotorHandle | None = None
         self._servo: ServoHandle | None = None
-        if config.commands == ("velocity",) and not self.pids:
+        if config.commands == ("velocity",) and not self.pids and not config.idles:
             self._motor = part.velocity_motor(
                 name,
                 max_effort=config.strength,
@@ -99,6 +101,7 @@ class JointActuator:
                 origin=origin,
             )
         self._yields = config.yields
+        self._idles = config.idles
         self._report_two = partial(part.report_two_drives, name, "the last command is used", origin)
         self._active = self._resting = ""
         self.command = 0.0
@@ -201,6 +204,9 @@ class JointActuator:
         self.rate = self.damping = 0.0
         if self._active in ("velocity", "effort"):
             self.command = 0.0
+        if self._idles:
+            self._idle()
+            return
         self._rest()
 
     def rest(self, *, holds: bool) -> None:
@@ -211,9 +217,8 @@ class JointActuator:
         """
         if not self._commands:
             return
-        if self._led and self._servo is not None:
-            self._active = ""
-            self._servo.release()
+        if (self._led or self._idles) and self._servo is not None:
+            self._idle()
             return
         self._select(self._commands[0])
         if holds and self._servo is not None:
@@ -225,6 +230,11 @@ class JointActuator:
     def _rivalled(self) -> bool:
         drive = self._motor or self._servo
         return drive is not None and drive.rivalled
+
+    def _idle(self) -> None:
+        self._active = ""
+        if self._servo is not None:
+            self._servo.release()
 
     def _rest(self) -> None:
         if self._yields and self._active:

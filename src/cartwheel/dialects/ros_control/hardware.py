@@ -70,6 +70,8 @@ class JointHardware(JointActuator):
                 exceeds_limit=min(strength, STRONGEST) > joint_limits.effort,
                 pid=gains,
                 overruns=forced,
+                # gz-sim cannot brake a wheel with an effort of 0.
+                idles=limits is None and not forced and joint.turns and joint.axis.effort == 0,
                 led=joint.mimic is not None or interfaces.mimic is not None,
                 # gz_ros2_control and gazebo_ros2_control stop such joints once in each control
                 # period, after which the motor of the drive plugin turns them on in the same step.

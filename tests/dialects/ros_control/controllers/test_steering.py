@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from cartwheel.codes.robot import STEERING_REVERSED, WHEEL_AXIS_MISALIGNED
 from tests.dialects.ros_control.cars import (
     BASE,
     FRONT,
@@ -63,6 +64,51 @@ def test_wheels_and_commands_are_published_in_the_order_of_the_lists(ackermann):
     assert list(state.linear_velocity_command) == pytest.approx(rims)
     assert list(state.traction_wheels_velocity) == pytest.approx(rims, rel=0.01)
     assert len(state.traction_wheels_position) == 0
+
+
+def backward(text):
+    """The car, driven along -x and steered by the axle behind, whose steering axes point down."""
+    return text.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>').replace(
+        '<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>'
+    )
+
+
+def reported(made, code):
+    return [each.values["joint"] for each in made.world.diagnostics if each.code is code]
+
+
+def test_a_car_that_faces_backward_has_its_right_wheels_where_they_are_listed(ackermann):
+    """Its wheels roll along -x, and the joints that are listed first are at the larger y."""
+    made = ackermann(
+        edit=backward,
+        traction_joints_names=["rear_left_joint", "rear_right_joint"],
+        steering_joints_names=["front_left_steer", "front_right_steer"],
+    )
+    assert reported(made, STEERING_REVERSED) == []
+    made.go(0.5, x=SPEED, turn=TURN)
+    before = made.place[2]
+    made.go(2.0, x=SPEED, turn=TURN)
+    assert made.place[2] - before == pytest.approx(2.0 * TURN, rel=0.05)
+    inner, outer = (math.atan(BASE / (CIRCLE + side * TRACK / 2)) for side in (-1, 1))
+    assert made.joint("front_right_steer") == pytest.approx(inner, abs=1e-3)
+    assert made.joint("front_left_steer") == pytest.approx(outer, abs=1e-3)
+
+
+def test_wheels_that_roll_backward_by_mistake_keep_their_sides(ackermann):
+    made = ackermann(edit=lambda text: text.replace('xyz="0 1 0"', 'xyz="0 -1 0"'))
+    made.go(0.5, x=SPEED, turn=TURN)
+    left = math.atan(BASE / (CIRCLE - TRACK / 2))
+    assert made.joint("front_left_steer") == pytest.approx(left, abs=1e-3)
+
+
+@pytest.mark.parametrize(("axis", "wrong"), [("0 0 1", True), ("0 0 -1", False)])
+def test_a_steering_axis_behind_the_driven_wheels_must_point_down(ackermann, axis, wrong):
+    made = ackermann(
+        edit=lambda text: text.replace('xyz="0.25 ', 'xyz="-0.75 ').replace("0 0 1", axis)
+    )
+    steers = ["front_left_steer", "front_right_steer"]
+    assert sorted(reported(made, STEERING_REVERSED)) == (steers if wrong else [])
+    assert reported(made, WHEEL_AXIS_MISALIGNED) == []
 
 
 def test_positions_of_wheels_are_published_where_the_odometry_is_of_them(ackermann):

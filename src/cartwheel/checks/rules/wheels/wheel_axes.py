@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from cartwheel.checks import nodes, plugin_tags
 from cartwheel.checks.robot import Robot
@@ -14,12 +14,15 @@ from cartwheel.checks.wheels import (
     axis_senses,
     axle_toward_left,
     faces_backwards,
+    gap_between,
+    placed_pair,
+    unsteered_wheels,
     wheel_axis,
     wheel_pairs,
     wheel_place,
 )
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.model import Joint
+from cartwheel.description.model import Joint, PluginTag
 from cartwheel.description.rolling import rolling
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.catalogue import plugin_named
@@ -115,23 +118,68 @@ def _not_across(robot: Robot, joint: Joint, toward_left: Floats) -> Diagnostic:
 @rule(robot_codes.STEERING_REVERSED)
 def steering_axes(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
-        for name in _steering(robot):
+        steering = _steering(robot)
+        behind = _steers_behind(robot, steering)
+        for name in steering:
             joint = robot.joints.get(name)
             if joint is None or joint.child not in robot.placed:
                 continue
-            if wheel_axis(robot, joint)[2] > _DOWN:
+            if wheel_axis(robot, joint)[2] * (-1.0 if behind else 1.0) > _DOWN:
                 continue
             node = nodes.child(robot.joint_node(name), "axis")
             xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
+            points = "up, and the joint is behind the fixed axle" if behind else "down"
             yield robot_codes.STEERING_REVERSED.diagnostic(
-                message=f'the axis of the steering joint "{name}" points down, so the robot steers '
-                "to the wrong side",
+                message=f'the axis of the steering joint "{name}" points {points}, so the robot '
+                "steers to the wrong side",
                 values={"joint": name},
                 origin=node.origin if node is not None else joint.origin,
                 instead=f'xyz="{xyz}"' if node is not None else "",
                 place="attribute" if node is not None else "",
                 mark="xyz",
             )
+
+
+def _steers_behind(robot: Robot, steering: Sequence[str]) -> bool:
+    """Whether the steered wheels are behind the others, in the direction in which it drives."""
+    wheels = unsteered_wheels(robot, steering)
+    turned = [
+        joint
+        for name in steering
+        if (joint := robot.joints.get(name)) is not None and joint.child in robot.placed
+    ]
+    axes = [wheel_axis(robot, each) for each in wheels]
+    if not turned or not axes or any(abs(axis[1]) < CAMBER for axis in axes):
+        return False
+    fixed = [wheel_place(robot, each).position[0] for each in wheels]
+    steered = [wheel_place(robot, each).position[0] for each in turned]
+    if max(steered) >= min(fixed) and max(fixed) >= min(steered):
+        return False  # both axles are steered, or wheels are in the middle
+    ahead = min(steered) > max(fixed)
+    return ahead if _drives_backward(robot, wheels) else not ahead
+
+
+def _drives_backward(robot: Robot, wheels: Sequence[Joint]) -> bool:
+    """Whether a robot faces along negative x: its driven wheels roll there, and its sides agree."""
+    driven = [each for each in wheels if each.name in robot.driven] or wheels
+    if any(wheel_axis(robot, each)[1] > -CAMBER for each in driven):
+        return False
+    pairs = [placed_pair(robot, *names) for names in _left_and_right(robot)]
+    gaps = [gap_between(robot, *pair)[1] for pair in pairs if pair is not None]
+    return bool(gaps) and all(gap < 0 for gap in gaps)
+
+
+def _left_and_right(robot: Robot) -> Iterator[tuple[str, str]]:
+    """A left and a right joint of each drive, and of each axle that is steered."""
+    for drive in robot.drives:
+        yield from zip(drive.left[:1], drive.right[:1], strict=False)
+    for tag in robot.description.plugins:
+        names = _steered_by(tag)
+        if len(names) == 2:
+            yield names[0], names[1]
+    if len(robot.steered) == 2:
+        # A controller lists the right one first.
+        yield robot.steered[1], robot.steered[0]
 
 
 @rule(robot_codes.WHEELS_TOED)
@@ -163,14 +211,19 @@ def wheels_toed(subject: Subject) -> Iterator[Diagnostic]:
 
 def _steering(robot: Robot) -> list[str]:
     """The joints that plugins and controllers steer."""
-    steered = {
-        name.strip(): None
-        for tag in robot.description.plugins
+    steered = [name for tag in robot.description.plugins for name in _steered_by(tag)]
+    return list(dict.fromkeys([*steered, *robot.steered]))
+
+
+def _steered_by(tag: PluginTag) -> list[str]:
+    """The joints that a plugin steers, the left one first."""
+    names = (
+        name.strip()
         for each in plugin_tags.roles(tag.filename)
         if each.role == "steering"
         for name in each.joints(tag.element)
-    }
-    return list(steered | dict.fromkeys(robot.steered))
+    )
+    return list(dict.fromkeys(names))
 
 
 def _held(robot: Robot, steering: str) -> list[Joint]:

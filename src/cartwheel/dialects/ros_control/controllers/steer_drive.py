@@ -17,8 +17,8 @@ from cartwheel.dialects.ros_control.controllers.twist_command import TwistComman
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
-    UP,
     check_axis,
+    check_steering,
     joint_place,
     wheel_radius,
 )
@@ -93,7 +93,7 @@ class SteerDriveController(WheelController):
         steering = self.claim(given.steer, "position")
         # With SteerBotHardwareGazebo, other joints move instead of the claimed ones.
         check_axis(self, driven.joint, LEFT)
-        check_axis(self, steering.joint, UP)
+        check_steering(self, steering.joint, driven.joint, backward=False)
         description = self.part.description
         wheel, steer = (
             claimed if description.joint(claimed) is not None else moved.joint

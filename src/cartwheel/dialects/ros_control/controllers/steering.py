@@ -20,8 +20,9 @@ from cartwheel.dialects.ros_control.controllers.twist_command import TwistComman
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
-    UP,
     check_axis,
+    check_steering,
+    joint_axis,
     joint_place,
 )
 from cartwheel.dialects.ros_control.hardware import JointHardware
@@ -31,6 +32,8 @@ from cartwheel.messages import header, zero
 from cartwheel.messages.store import TWIN
 
 _STATE = f"control_msgs{TWIN}/msg/SteeringControllerStatus"
+_SIDEWAYS = 0.5
+"""Minimum cosine between a wheel's axis and the right of the robot at which it rolls backward."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -119,7 +122,8 @@ class SteeringController(WheelController):
     """Driven and steered wheels, as in ROS 2's steering_controllers_library.
 
     Commands arrive on ``reference`` (TwistStamped), or with ``use_stamped_vel: false`` on
-    ``reference_unstamped`` (Twist). Of two wheels, the one with the larger y is the left one.
+    ``reference_unstamped`` (Twist). Of two wheels, the one with the larger y is the left one,
+    unless the robot faces along negative x.
     Source: ackermann_steering_controller, bicycle_steering_controller,
     tricycle_steering_controller.
     """
@@ -143,13 +147,16 @@ class SteeringController(WheelController):
                     f"an axle must have one or two wheels (got {len(names)})",
                     values={"wheels": len(names)},
                 )
-        driven = self._axle(traction, "velocity")
-        steering_joints = self._axle(steering, "position")
+        claimed = [self.claim(name, "velocity") for name in traction]
+        turned = [self.claim(name, "position") for name in steering]
+        backward = self._faces_backward(traction, steering)
+        driven = self._left_first(claimed, backward=backward)
+        steering_joints = self._left_first(turned, backward=backward)
         # The published state has the order of the parameter lists.
         self._listed = [[self.claims[name] for name in names] for names in (traction, steering)]
         self._state = self.advertise("controller_state", _STATE)
         for joint in steering_joints:
-            check_axis(self, joint.joint, UP)
+            check_steering(self, joint.joint, traction[0], backward=backward)
         for joint in driven:
             check_axis(self, joint.joint, LEFT)
         for name, track, wheels in (
@@ -193,9 +200,29 @@ class SteeringController(WheelController):
         message.steering_angle_command = np.array([each.command for each in steering])
         return message
 
-    def _axle(self, names: Sequence[str], interface: str) -> list[JointHardware]:
-        """Claims the wheels of an axle; returns the left one first."""
-        claimed = [self.claim(name, interface) for name in names]
+    def _faces_backward(self, traction: Sequence[str], steering: Sequence[str]) -> bool:
+        """Whether the robot faces along negative x.
+
+        Its wheels roll there, and the wheels that are listed first, the right ones, are at the
+        larger y.
+        """
+        description = self.part.description
+        pairs = [names for names in (traction, steering) if len(names) == 2]
+        return (
+            bool(pairs)
+            and all(float(joint_axis(description, name)[1]) < -_SIDEWAYS for name in traction)
+            and all(
+                joint_place(description, right)[1] > joint_place(description, left)[1]
+                for right, left in pairs
+            )
+        )
+
+    def _left_first(
+        self, wheels: Sequence[JointHardware], *, backward: bool
+    ) -> list[JointHardware]:
+        """The wheels of an axle, the left one first."""
         return sorted(
-            claimed, key=lambda joint: -joint_place(self.part.description, joint.joint)[1]
+            wheels,
+            key=lambda joint: joint_place(self.part.description, joint.joint)[1],
+            reverse=not backward,
         )

@@ -16,6 +16,8 @@ from cartwheel.geometry import Array, matrix_from_quat
 
 LEFT, RIGHT, UP = (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)
 """Rotation axes of wheels, of reversed wheels and of steering joints, in the robot's base frame."""
+_BEHIND = 1e-3
+"""Distance of a steered wheel behind the driven axle, m."""
 _SIDEWAYS = 0.2
 """Ratio of the distances of two wheels along y and x below which a robot faces along y."""
 
@@ -60,6 +62,34 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
             "positive commands turn the wheel in the opposite direction",
             at=described.origin,
             values={"joint": joint, "axis": f"{sign}{name}"},
+        )
+
+
+def check_steering(controller: Controller, joint: str, driven: str, *, backward: bool) -> None:
+    """Warns about a steering joint whose axis turns the wheels to the wrong side.
+
+    A wheel behind the driven axle must turn to the right for a turn to the left.
+
+    Args:
+        controller: The drive.
+        joint: The steering joint.
+        driven: Joint of a driven wheel.
+        backward: Whether the robot faces along negative x.
+    """
+    description = controller.part.description
+    described = description.joint(joint)
+    assert described is not None
+    before = joint_place(description, joint)[0] - joint_place(description, driven)[0]
+    behind = (before if backward else -before) > _BEHIND
+    up = float(joint_axis(description, joint)[2]) * (-1.0 if behind else 1.0)
+    if up < -0.5:
+        points = "up, and the joint is behind the driven axle" if behind else "down"
+        controller.warn(
+            robot.STEERING_REVERSED,
+            f'the axis of the steering joint "{joint}" points {points}, so the robot steers to the '
+            "wrong side",
+            at=described.origin,
+            values={"joint": joint},
         )
 
 
