@@ -11,8 +11,8 @@ SOLID = """<inertial><mass value="{m}"/>
 
 
 def wheel(name, x, y, *, length=0.1, z=0.0, hub=False):
-    tyre = f"""<collision name="tyre"><geometry><cylinder radius="0.1" length="{length}"/></geometry>
-      </collision>"""
+    tyre = f"""<collision name="tyre"><geometry><cylinder radius="0.1" length="{length}"/>
+      </geometry></collision>"""
     own = f"""<link name="{name}">{SOLID.format(m=1)}{"" if hub else tyre}</link>
       <joint name="{name}_axle" type="continuous"><parent link="base"/><child link="{name}"/>
       <origin xyz="{x} {y} {z}" rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint>"""

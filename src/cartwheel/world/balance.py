@@ -56,21 +56,18 @@ def stands_on_width(description: RobotDescription) -> bool:
 def _axles(description: RobotDescription) -> Iterator[tuple[Link, Axle]]:
     """The links that roll and have collisions, each with its axle in the model."""
     inbound: dict[str, Joint] = {}
-    for joint in description.joints:
-        inbound.setdefault(joint.child, joint)
+    for each in description.joints:
+        inbound.setdefault(each.child, each)
     links = {link.name: link for link in description.links}
     for link in description.links:
         root, seen = link, {link.name}
+        above = inbound.get(link.name)
         # A tyre may be fixed to a hub.
-        while (
-            (joint := inbound.get(root.name)) is not None
-            and joint.type == "fixed"
-            and joint.parent in links
-            and joint.parent not in seen
-        ):
-            root = links[joint.parent]
+        while above is not None and above.type == "fixed" and above.parent in links.keys() - seen:
+            root = links[above.parent]
             seen.add(root.name)
-        axle = axle_of(inbound.get(root.name))
+            above = inbound.get(root.name)
+        axle = axle_of(above)
         if axle is None or not link.collisions:
             continue
         there = axle.seen_from(root.pose.inverse())
@@ -87,11 +84,12 @@ def _in_line(axles: Sequence[Axle]) -> bool:
 
 
 def _behind(first: Axle, second: Axle) -> bool:
-    apart = tuple(a - b for a, b in zip(second.point, first.point, strict=True))
+    x, y, z = (a - b for a, b in zip(second.point, first.point, strict=True))
+    apart = (x, y, z)
     along = _dot(apart, first.axis)
     across = math.sqrt(max(0.0, _dot(apart, apart) - along**2))
     return abs(along) <= _IN_LINE * across
 
 
-def _dot(a: Sequence[float], b: Vec3) -> float:
+def _dot(a: Vec3, b: Vec3) -> float:
     return sum(x * y for x, y in zip(a, b, strict=True))

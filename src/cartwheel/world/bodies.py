@@ -303,7 +303,7 @@ class BodyBuilder:
     def _tread(
         self, link: Link, collision: Collision, axle: Axle, built: tuple[Shape, Pose]
     ) -> tuple[Shape, Pose]:
-        """The shape and pose in the model of which the tread is taken: it rolls as it would round."""
+        """The shape and pose in the model from which the tread is taken: as if it were round."""
         if not self._wide:
             return built
         shape, place = tyre(collision, axle)

@@ -77,7 +77,7 @@ def four_wheels(*, steered=False):
 class Car:
     """A robot with one drive, ``base``, that a test commands."""
 
-    def __init__(self, make, folder, wheels, topic, tags="", edit=str, **settings):
+    def __init__(self, make, folder, wheels, topic, tags="", *, edit=str, **settings):
         file = folder / "drive.yaml"
         file.write_text(yaml.safe_dump(ros2_parameters(base=settings)))
         robot = folder / "car.urdf"

@@ -3,7 +3,6 @@
 import math
 
 import pytest
-from cartwheel.codes.robot import STEERING_REVERSED, WHEEL_AXIS_MISALIGNED
 from tests.dialects.ros_control.cars import (
     BASE,
     FRONT,
@@ -14,6 +13,8 @@ from tests.dialects.ros_control.cars import (
     four_wheels,
     heading,
 )
+
+from cartwheel.codes.robot import STEERING_REVERSED, WHEEL_AXIS_MISALIGNED
 
 SPEED, TURN = 0.4, 0.4
 CIRCLE = SPEED / TURN
