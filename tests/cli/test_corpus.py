@@ -57,3 +57,9 @@ def test_a_model_of_a_world_has_its_own_line(program, tmp_path):
 def test_a_folder_without_robots_is_an_error(program, tmp_path):
     assert f"[{NO_ROBOTS}]" in program("corpus", tmp_path, status=2).stderr
     assert f"[{NO_ROBOTS}]" in program("corpus", tmp_path / "no", status=2).stderr
+    (tmp_path / "hand.xacro").write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="hand"/></robot>'
+    )
+    said = program("corpus", tmp_path, status=2).stderr
+    assert "contains no robot, but 1 with macros only" in said
+    assert "that use them" in said

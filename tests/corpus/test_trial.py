@@ -1080,6 +1080,36 @@ def test_a_gripper_in_an_absent_file_is_the_reason_why_its_controller_does_not_s
     assert (fault.test, fault.subject, fault.code) == ("controller", "hand", INCLUDE_ABSENT)
 
 
+def test_a_controller_of_the_file_in_the_tag_must_start_if_a_launch_file_starts_it(tmp_path):
+    plugin = (
+        '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
+        '</plugin></hardware><joint name="shoulder"><command_interface name="position"/></joint>'
+        '</ros2_control><gazebo><plugin name="c" filename="gz_ros2_control-system">'
+        "<parameters>config/a.yaml</parameters></plugin></gazebo>"
+    )
+    body = ARM.format(kind="Position")
+    tag = body[body.index("<gazebo>") : body.index("</gazebo>") + len("</gazebo>")]
+    group = "{type: position_controllers/JointGroupPositionController}"
+    files = {
+        "package.xml": "<package><name>arm</name></package>",
+        "arm.urdf": f'<robot name="arm">{body.replace(tag, plugin)}</robot>',
+        "config/a.yaml": f"controller_manager: {{ros__parameters: {{a: {group}, hand: {group}}}}}"
+        "\na: {ros__parameters: {joints: [shoulder]}}\nhand: {ros__parameters: {joints: [f]}}",
+        "launch/a.launch.py": """def generate_launch_description():
+    path = get_package_share_directory("arm") + "/arm.urdf"
+    Node(package="robot_state_publisher", parameters=[{"robot_description": open(path).read()}])
+    for name in ("a", "hand"):
+        ExecuteProcess(cmd=["ros2", "control", "load_controller", "--set-state", "active", name])
+""",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    verdict = try_robot(tmp_path / "arm.urdf", standing=1.0)
+    assert verdict.controllers == ("a",)
+    assert [(each.test, each.subject) for each in verdict.faults] == [("controller", "hand")]
+
+
 @pytest.mark.parametrize(
     ("name", "moves"),
     [

@@ -222,6 +222,36 @@ def test_a_part_of_a_joined_path_may_be_a_list_of_substitutions(package):
 
 
 @pytest.mark.parametrize(
+    ("command", "shell"),
+    [
+        (
+            '["ros2", "control", "load_controller", "--set-state", "active", "arm_controller"]',
+            False,
+        ),
+        ('["ros2 control load_controller -c /cm --set-state start ", "arm_controller"]', True),
+        ('[[FindExecutable(name="ros2"), " control load_controller arm_controller"]]', True),
+        (
+            '["ros2", "control", "load_controller", "arm_controller", share + "/config/a.yaml"]',
+            False,
+        ),
+        ('["ros2", "run", "controller_manager", "spawner", "arm_controller", "-t", "t/T"]', False),
+    ],
+)
+def test_a_command_of_ros2_starts_a_controller(package, command, shell):
+    text = f"""def generate_launch_description():
+    share = get_package_share_directory("arm")
+    path = share + "/urdf/arm.urdf.xacro"
+    Node(package="robot_state_publisher",
+         parameters=[{{"robot_description": Command(["xacro ", path])}}])
+    ExecuteProcess(cmd={command}, shell={shell}, output="screen")
+"""
+    folder = package(arm_dot_launch_dot_py=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == ("arm_controller",)
+    assert [each.name for each in use.controllers] == (["a.yaml"] if "a.yaml" in command else [])
+
+
+@pytest.mark.parametrize(
     ("expression", "expected"),
     [
         ("""["'", name, "_x'"]""", "arm_x"),

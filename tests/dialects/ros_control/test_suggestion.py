@@ -55,6 +55,18 @@ def test_a_robot_of_ros_control_gets_the_file_of_its_joints(workspace):
     assert names(workspace, text) == ["one.yaml"]
 
 
+def test_files_outside_folders_named_config_are_offered_if_there_are_no_others(workspace):
+    text = robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1)
+    own = workspace / "arm_description"
+    for folder in ("launch", "build"):
+        (own / folder).mkdir()
+        (own / folder / f"{folder}.yaml").write_text(ROS1_FILE)
+    (own / "launch" / "joints.yaml").write_text("angles: {another: 1}")
+    assert names(workspace, text) == ["one.yaml"]
+    (workspace / "arm_bringup" / "config" / "one.yaml").unlink()
+    assert names(workspace, text) == ["launch.yaml"]
+
+
 def test_controllers_of_the_own_package_are_those_of_the_robot(workspace):
     """Other robots in the packages beside it have joints with equal names."""
     text = robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1)

@@ -157,13 +157,22 @@ def _survey(
     launches = launches_near(folder, package_path) if folder.is_dir() else None
     found = survey(folder, package_path=package_path, launches=launches or ())
     if not (found.robots or found.in_worlds):
+        but = f", but {_counted(found.skipped)}" if found.skipped else ""
         raise CartwheelError(
-            f"{folder} contains no robot description",
+            f"{folder} contains no robot{but or ' description'}",
             code=NO_ROBOTS,
-            hint="Pass a folder that contains .xacro, .urdf, .sdf or .world files.",
+            hint="Pass a folder with files that use them."
+            if any(kind in ("macros", "part") for _, kind in found.skipped)
+            else "Pass a folder that contains .xacro, .urdf, .sdf or .world files of robots.",
             values={"folder": str(folder)},
         )
     return found, launches
+
+
+def _counted(skipped: Sequence[tuple[Path, Kind]]) -> str:
+    """The number of files of each kind that is no robot."""
+    counts = Counter(kind for _, kind in skipped)
+    return ", ".join(f"{count} {_KINDS[kind]}" for kind, count in sorted(counts.items()))
 
 
 def _tried(
@@ -211,9 +220,7 @@ def _show(
             say(f"missing plugin {name}: {users} robot{'s' if users != 1 else ''}")
     say(f"\n{_summary(verdicts)}")
     if skipped:
-        counts = Counter(kind for _, kind in skipped)
-        kinds = ", ".join(f"{count} {_KINDS[kind]}" for kind, count in sorted(counts.items()))
-        say(f"skipped: {kinds}")
+        say(f"skipped: {_counted(skipped)}")
 
 
 def _show_faults(verdict: Verdict) -> None:

@@ -43,6 +43,8 @@ BRIDGES = frozenset({"ros_gz_bridge", "ros_ign_bridge"})
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
+_LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
+"""Options of ``ros2 control load_controller`` with a value."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
 
@@ -296,9 +298,30 @@ class Facts:
         if words and words[0].rsplit("/", 1)[-1] in _SERVERS:
             self.simulated = True
             self._begin(world_in(words))
+        # With a shell, the words of a command are joined.
+        program, *rest = " ".join(words).split() or [""]
+        if program.rsplit("/", 1)[-1] != "ros2":
+            return
+        if rest[:2] == ["control", "load_controller"]:
+            self._load(rest[2:])
+        elif rest[:1] == ["run"] and rest[2:3]:
+            self.node(rest[1], rest[2], rest[3:], "")
 
     def _begin(self, world: str) -> None:
         self.world = self.world or world.strip()
+
+    def _load(self, words: list[str]) -> None:
+        """Adds the controller of ``ros2 control load_controller``, and its parameters."""
+        positional: list[str] = []
+        options = iter(words)
+        for word in options:
+            if word in _LOADING_OPTIONS:
+                next(options, None)
+            elif not word.startswith("-"):
+                positional.append(word)
+        self._spawn(positional[:1])
+        for each in positional[1:2]:
+            self.parameters(each)
 
     def _spawn(self, words: list[str]) -> None:
         skip = False

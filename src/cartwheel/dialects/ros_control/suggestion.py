@@ -10,6 +10,7 @@ from typing import Any
 from cartwheel import yaml_text
 from cartwheel.codes.running import CONTROLLERS_NOT_NAMED
 from cartwheel.description.files.package_folders import package_name
+from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.files import (
@@ -91,7 +92,8 @@ def lacks_controllers(robot: RobotDescription) -> bool:
 def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list[Path]:
     """Returns YAML files with controllers for a robot's joints, or for the states of all joints.
 
-    The folders named ``config`` in the robot's package and in the packages beside it are searched.
+    The folders named ``config`` in the robot's package and in the packages beside it are searched,
+    and the other folders of the robot's package if they contain no controllers for the joints.
     If its own package contains controllers for the joints, those of the packages beside it are for
     other robots with equal joints. Files that only publish the states of all joints must be in a
     package with controllers for the joints, or in the robot's own.
@@ -106,6 +108,8 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
     others: list[tuple[Path, bool]] = []
     for path, named in _fitting(_candidates(package), joints, ros2=ros2):
         (own if package in path.parents else others).append((path, named))
+    if package is not None and not any(named for _, named in own + others):
+        own += [each for each in _fitting(_elsewhere(package), joints, ros2=ros2) if each[1]]
     homes = {_home(path, package) for path, named in own + others if named}
     if any(named for _, named in own):
         others = [(path, named) for path, named in others if not named]
@@ -210,6 +214,20 @@ def _candidates(package: Path | None) -> Iterator[Path]:
             if seen > _MOST:
                 return
             yield path
+
+
+def _elsewhere(package: Path) -> Iterator[Path]:
+    """YAML files of a package outside its folders named ``config``."""
+    seen = 0
+    for folder, names in source_folders(package):
+        if "config" in folder.relative_to(package).parts:
+            continue
+        for name in names:
+            if name.endswith((".yaml", ".yml")):
+                seen += 1
+                if seen > _MOST:
+                    return
+                yield folder / name
 
 
 def _names(word: str, joint: str) -> bool:
