@@ -98,6 +98,7 @@ PLUGINS = {
     "gz-sim-multicopter-motor-model-system": "gz.vehicles.motor_model",
     "gz-sim-odometry-publisher-system": "gz.odometry_publisher",
     "gz-sim-pose-publisher-system": "gz.pose_publisher",
+    "gz-sim-spacecraft-thruster-model-system": "gz.forces.spacecraft_thruster",
     "gz-sim-thruster-system": "gz.fluids.thruster",
     "gz-sim-touchplugin-system": "gz.touching.touch",
     "gz-sim-track-controller-system": "gz.vehicles.track_controller",
