@@ -1212,6 +1212,24 @@ def test_thrusters_push_a_boat_in_water(tried, more):
     assert found.spins[1].measured > 0.05
 
 
+def test_a_spacecraft_is_tested_without_gravity(tried):
+    plugin = (
+        '<gazebo><plugin name="v" filename="gz-sim-spacecraft-thruster-model-system">'
+        "<link_name>hull</link_name><actuator_number>2</actuator_number><max_thrust>3</max_thrust>"
+        "<duty_cycle_frequency>10</duty_cycle_frequency><sub_topic>duty</sub_topic></plugin></gazebo>"
+    )
+    hull = (
+        '<link name="hull"><inertial><mass value="6"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    )
+    verdict = tried(hull, plugin)
+    assert verdict.good, verdict.faults
+    assert verdict.stand.state == "floats"
+    (spin,) = verdict.spins
+    assert (spin.joint, spin.commanded) == ("hull", 3.0)
+    assert spin.measured == pytest.approx(3.0 / 6 * 0.1, rel=0.1)
+
+
 def test_a_thruster_without_its_joint_is_a_fault_of_the_file(tried):
     found = tried(BOAT, SCREW.format(name="port", joint="no_joint", y=0.1, more=""))
     assert found.outcome == "file" and not found.moves

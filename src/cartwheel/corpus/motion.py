@@ -14,7 +14,7 @@ from cartwheel.corpus.heading import heading
 from cartwheel.corpus.hovering import climbs, drag_errors
 from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.loads import held_by, resistance
-from cartwheel.corpus.thrusters import has_thrusters
+from cartwheel.corpus.thrusters import has_thrusters, is_in_space
 from cartwheel.corpus.verdict import TOLERANCE, Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.devices.drives.drive import Drives
@@ -86,7 +86,7 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
         speed=math.dist(before.position, after.position),
         turn=_turned(before, after),
         size=Robot(description, None).size,
-        floats=has_thrusters(description),
+        floats=has_thrusters(description) or is_in_space(description),
     )
 
 

@@ -1,4 +1,4 @@
-"""Commands to the thrusters of a boat or an underwater vehicle."""
+"""Commands to the thrusters of a boat, an underwater vehicle or a spacecraft."""
 
 from __future__ import annotations
 
@@ -10,6 +10,11 @@ from cartwheel.corpus.verdict import Spin
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.gz.fluids.thruster import ThrusterParameters, ThrusterSystem, topics
+from cartwheel.dialects.gz.forces.spacecraft_thruster import (
+    SpacecraftThrusterParameters,
+    SpacecraftThrusterSystem,
+    valve_topic,
+)
 from cartwheel.dialects.tags import read
 from cartwheel.errors import PluginError
 from cartwheel.geometry import rotate
@@ -18,11 +23,48 @@ _ACCELERATION = 0.5
 """Acceleration of the robot's own mass by the commanded thrust, m/s²."""
 _SECONDS = 0.1
 """Before the robot has turned or drifted much."""
+_OTHERS = 64
+"""Number of valves that stay closed after the opened one in a command."""
 
 
 def has_thrusters(robot: RobotDescription) -> bool:
     """Whether a robot moves in water."""
     return any(plugin_named(tag.filename) is ThrusterSystem for tag in robot.plugins)
+
+
+def is_in_space(robot: RobotDescription) -> bool:
+    """Whether a robot moves without weight."""
+    return any(plugin_named(tag.filename) is SpacecraftThrusterSystem for tag in robot.plugins)
+
+
+def bursts(world: World, model: Model, robot: RobotDescription) -> Iterator[Spin]:
+    """Opens each valve of a spacecraft alone.
+
+    The velocity is that of the nozzle's link along the thrust.
+    """
+    live = {info.name for info in world.graph.topics() if info.subscribers}
+    for tag in robot.plugins:
+        if plugin_named(tag.filename) is not SpacecraftThrusterSystem:
+            continue
+        try:
+            config, _ = read(SpacecraftThrusterParameters, tag.element)
+        except PluginError:
+            continue
+        topic = valve_topic(model.name, model.namespace, config)
+        if topic not in live or robot.link(config.link.strip()) is None:
+            continue
+        world.reset()
+        world.publish(topic, {"normalized": [0.0] * config.number + [1.0] + [0.0] * _OTHERS})
+        world.run(_SECONDS)
+        link = model.link(config.link.strip())
+        axis = rotate(link.pose.orientation, (0.0, 0.0, 1.0))
+        yield Spin(
+            topic=topic,
+            joint=link.name,
+            commanded=config.thrust,
+            measured=sum(a * b for a, b in zip(axis, link.velocity.linear, strict=True)),
+            effort=True,
+        )
 
 
 def thrusts(world: World, model: Model, robot: RobotDescription) -> Iterator[Spin]:

@@ -21,7 +21,7 @@ from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.poses import posed
 from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
-from cartwheel.corpus.thrusters import has_thrusters, thrusts
+from cartwheel.corpus.thrusters import bursts, has_thrusters, is_in_space, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.corpus.worlds import load_from_world
 from cartwheel.description import load_robot
@@ -47,6 +47,8 @@ _HIGH = 5.0
 _WATER = """<sdf version="1.9"><world name="water"><gravity>0 0 -9.8</gravity>
 <plugin name="buoyancy" filename="gz-sim-buoyancy-system"/></world></sdf>"""
 """A world filled with water, for robots with thrusters."""
+_SPACE = """<sdf version="1.9"><world name="space"><gravity>0 0 0</gravity></world></sdf>"""
+"""A world without gravity and ground, for spacecraft."""
 
 
 def try_robot(
@@ -102,7 +104,7 @@ def try_robot(
         controllers, spawned = selected.files, selected.names
         verdict = replace(verdict, observed=selected.problems)
     try:
-        with World(_WATER if has_thrusters(robot) else "empty", lenient=True) as world:
+        with World(_surroundings(robot), lenient=True) as world:
             pose = _place(robot)
             spawned_model = world.spawn(
                 robot, name=_name_in(world, robot), x=pose.x, y=pose.y, z=pose.z,
@@ -270,8 +272,15 @@ def _moved(
     moved = verdict
     for moved in _joints_moved(verdict, world, model, robot, held):
         yield moved
-    pushes = tuple(thrusts(world, model, robot))
+    pushes = (*thrusts(world, model, robot), *bursts(world, model, robot))
     yield replace(moved, spins=(*moved.spins, *pushes))
+
+
+def _surroundings(robot: RobotDescription) -> str:
+    """The world in which a robot is tested."""
+    if has_thrusters(robot):
+        return _WATER
+    return _SPACE if is_in_space(robot) else "empty"
 
 
 def _joints_moved(

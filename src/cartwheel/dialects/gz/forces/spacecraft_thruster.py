@@ -39,6 +39,20 @@ class SpacecraftThrusterParameters:
     )
 
 
+def valve_topic(model: str, namespace: str, config: SpacecraftThrusterParameters) -> str:
+    """Returns the topic of the commands.
+
+    Args:
+        model: Name of the model.
+        namespace: Namespace in which the model was spawned.
+        config: The tags.
+    """
+    spawned = namespace.strip("/")
+    space = config.topic.strip().strip("/") or spawned or model
+    topic = f"/{space}/{config.sub_topic.strip().strip('/')}".rstrip("/")
+    return namespaced(topic, spawned)
+
+
 class SpacecraftThrusterSystem(Plugin[SpacecraftThrusterParameters]):
     """Applies the thrust of a valve that opens for a part of each cycle.
 
@@ -50,15 +64,12 @@ class SpacecraftThrusterSystem(Plugin[SpacecraftThrusterParameters]):
     def configure(self) -> None:
         config = self.config
         self.check_above_zero(duty_cycle_frequency=config.frequency)
-        spawned = self.part.namespace.strip("/")
-        space = config.topic.strip().strip("/") or spawned or self.part.name
-        topic = f"/{space}/{config.sub_topic.strip().strip('/')}".rstrip("/")
         self.add(
             PulsedThruster(
                 self.scope,
                 PulsedThrusterConfig(
                     link=config.link.strip(),
-                    topic=namespaced(topic, spawned),
+                    topic=valve_topic(self.part.name, self.part.namespace, config),
                     number=config.number,
                     thrust=config.thrust,
                     frequency=config.frequency,
