@@ -217,6 +217,18 @@ def test_a_wrong_radius_also_explains_how_fast_sliding_wheels_turn_the_base():
     assert _explained(radius, drives=(right,)) == {"turn": None}
 
 
+def test_of_two_wrong_sizes_the_one_that_errs_in_the_measured_direction_is_the_reason():
+    radius = WHEEL_DIAMETER_MISMATCH.diagnostic(
+        "too small", severity="warning", values={"stated": 0.05, "measured": 0.075}
+    )
+    apart = WHEEL_SEPARATION_MISMATCH.diagnostic(
+        "too narrow", severity="warning", values={"stated": 0.2, "measured": 0.25}
+    )
+    assert cause_of_drive([apart, radius], 1.2, turning=True) is radius
+    assert cause_of_drive([radius, apart], 1.2, turning=True) is radius
+    assert cause_of_drive([radius, apart], 0.8, turning=True) is apart
+
+
 @pytest.mark.parametrize("code", [FILE_MISSING, FILE_ON_NETWORK])
 def test_a_robot_that_fell_cannot_drive(code):
     lost = code.diagnostic("no mesh", values={"left_out": "collision"})

@@ -101,8 +101,11 @@ def _cause(
         return skids
     product = math.prod(factor for _, factor in factors.values())
     for each, factor in factors.values():
-        if _follows(ratio, factor) or _follows(ratio, product):
+        if _follows(ratio, factor):
             return each
+    if factors and _follows(ratio, product):
+        # Of several mistakes, the one that contributes most to the error.
+        return max(factors.values(), key=lambda pair: (pair[1] - 1.0) * (ratio - 1.0))[0]
     if arc and factors:
         # Steering and rim speeds contradict each other, so the wheels slide.
         expected = [1.0, *(factor for _, factor in factors.values())]
