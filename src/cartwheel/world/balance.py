@@ -45,6 +45,9 @@ def stands_on_width(description: RobotDescription) -> bool:
     if max(offsets) - min(offsets) > min(half for _, half in across):
         return False
     ground, radius = min(bottoms)
+    first = axles[0][1]
+    if max(_apart(first, axle)[1] for _, axle in axles) < radius:
+        return False  # one wheel, such as a part of a test stand
     return not any(
         lowest(collision.shape, link.pose @ collision.pose) < ground + _TOUCHES * radius
         for link in description.links
@@ -84,11 +87,16 @@ def _in_line(axles: Sequence[Axle]) -> bool:
 
 
 def _behind(first: Axle, second: Axle) -> bool:
+    along, across = _apart(first, second)
+    return along <= _IN_LINE * across
+
+
+def _apart(first: Axle, second: Axle) -> tuple[float, float]:
+    """Distances of two axles along the first one and across it, m."""
     x, y, z = (a - b for a, b in zip(second.point, first.point, strict=True))
-    apart = (x, y, z)
-    along = _dot(apart, first.axis)
-    across = math.sqrt(max(0.0, _dot(apart, apart) - along**2))
-    return abs(along) <= _IN_LINE * across
+    gap = (x, y, z)
+    along = _dot(gap, first.axis)
+    return abs(along), math.sqrt(max(0.0, _dot(gap, gap) - along**2))
 
 
 def _dot(a: Vec3, b: Vec3) -> float:
