@@ -187,7 +187,7 @@ STEERING_REVERSED = Code(
     "CW246",
     "steering-reversed",
     "warning",
-    "the axis of a steering joint has the wrong direction, so the robot steers to the wrong side",
+    "the axis of a steering joint steers the robot to the wrong side",
 )
 PLANAR_FRICTION = Code(
     "CW248",
