@@ -122,13 +122,11 @@ def selection(
                 starter, named = each, found
                 break
     files = tuple(each for each in named or near if _is_complete(each, robot))
-    if not files and starter is None and is_controlled(robot) and not lacks_controllers(robot):
-        # The robot's own tag states the files.
-        starter = _starter(Path(robot.origin.file), use, launches)
     names = starter.spawned if starter is not None and (named or not files) else ()
-    if not files and not names and use is not None and not lacks_controllers(robot):
+    if not files and not names and is_controlled(robot) and not lacks_controllers(robot):
         # The robot's own tags name the files.
-        names = use.spawned
+        own = _starter(Path(robot.origin.file), use, launches)
+        names = () if own is None else own.spawned
     unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
     reported = _undefined(robot, starter or _starter(Path(robot.origin.file), use, launches))
     problems = (*unreadable, *reported)
