@@ -138,7 +138,7 @@ def robot(plugin: type[Plugin[Any]], inside: str) -> str:
             f'<parent link="{LINK}"/><child link="{name}_wheel"/><origin xyz="{x} {y} 0"/>'
             f'<axis xyz="{axis}"/></joint>'
         )
-    for name in sorted(set(re.findall(r"<link>(\w+)</link>", inside)) - {LINK}):
+    for name in sorted(set(re.findall(r"<(?:link|\w+_track)>(\w+)</", inside)) - {LINK}):
         y = 0.2 if "left" in name else -0.2
         parts.append(
             f'<link name="{name}">{mass}</link><joint name="{name}_joint" type="fixed">'

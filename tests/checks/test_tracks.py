@@ -48,6 +48,34 @@ def test_a_vehicle_turns_as_fast_as_is_reported(bench):
     assert not bench.find(vehicle(round(fits, 3)), "skid-steering", "x.sdf")
 
 
+def classic(efficiency):
+    """The same vehicle for Gazebo Classic."""
+    head = vehicle(efficiency).partition("<plugin")[0]
+    other = PART.format(name="right", y=-0.3, mass=3, length=0.4, width=0.2, height=0.1)
+    sides = "".join(f"<{each}_track>{each}</{each}_track>" for each in TRACKS)
+    return (
+        f'{head}{other}<joint name="right_joint" type="fixed"><parent>base</parent><child>right'
+        '</child></joint><plugin name="v" filename="libSimpleTrackedVehiclePlugin.so"><body>base'
+        f"</body>{sides}<tracks_separation>0.6</tracks_separation><steering_efficiency>{efficiency}"
+        "</steering_efficiency></plugin></model></sdf>"
+    )
+
+
+def test_a_vehicle_of_gazebo_classic_turns_as_fast_as_is_reported(bench):
+    # Points have the part of the speed along their circle: 0.3 (y1 + y2) / (r1^2 + r2^2).
+    (finding,) = bench.find(classic(0.5), "skid-steering", "x.sdf")
+    fits = 0.3 * (0.2 + 0.4) / (0.2**2 + 0.2**2 + 0.2**2 + 0.4**2)
+    assert finding.values["ratio"] == pytest.approx(fits / 0.5)
+    with World("empty") as world:
+        model = world.spawn(classic(0.5))
+        world.publish("/tank/cmd_vel", {"angular": {"z": 0.4}})
+        world.run(1.0)
+        before = model.pose.yaw
+        world.run(1.0)
+        assert model.pose.yaw - before == pytest.approx(0.4 * fits / 0.5, rel=0.02)
+    assert not bench.find(classic(round(fits, 3)), "skid-steering", "x.sdf")
+
+
 BASE = """<robot name="r">{world}<link name="root"><inertial><mass value="{mass}"/>
 <inertia ixx="1e-6" iyy="1e-6" izz="1e-6"/></inertial></link>
 <link name="base"><inertial><mass value="70"/><inertia ixx="1" iyy="1" izz="1"/></inertial>

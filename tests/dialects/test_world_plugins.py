@@ -49,8 +49,9 @@ def test_what_is_built_in_is_not(filename):
 
 
 @pytest.mark.parametrize("place", ["world", "model"])
-def test_a_plugin_that_only_draws_is_a_note(place):
-    plugin = '<plugin name="p" filename="libLinkPlot3DPlugin.so"/>'
+@pytest.mark.parametrize("name", ["LinkPlot3DPlugin", "KeysToCmdVelPlugin"])
+def test_a_plugin_for_the_window_is_a_note(name, place):
+    plugin = f'<plugin name="p" filename="lib{name}.so"/>'
     inside = plugin if place == "world" else f'<model name="m"><link name="l"/>{plugin}</model>'
     session = Session(load_text(f'<sdf version="1.6"><world name="w">{inside}</world></sdf>'))
     (found,) = [d for d in session.diagnostics if d.code is devices.PLUGIN_UNKNOWN]

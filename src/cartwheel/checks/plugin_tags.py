@@ -14,7 +14,7 @@ from cartwheel.dialects.catalogue import all_plugins, plugin_named, plugin_names
 from cartwheel.dialects.tag_roles import WHEEL_ROLES, Role, TagRole
 from cartwheel.dialects.tags import default_joints as default_joints_of
 from cartwheel.dialects.tags import read, roles_of, tags_of
-from cartwheel.dialects.world_plugins import BUILT_IN, DISPLAY_ONLY
+from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
 from cartwheel.errors import Diagnostic, PluginError
 
 _RELATED = {
@@ -30,7 +30,7 @@ _RELATED = {
 def is_simulated(tag: PluginTag) -> bool:
     """Whether Cartwheel simulates a plugin, or does itself what the plugin does."""
     name = short_name(tag.filename)
-    return plugin_named(tag.filename) is not None or name in BUILT_IN | DISPLAY_ONLY
+    return plugin_named(tag.filename) is not None or name in BUILT_IN | WITHOUT_EFFECT
 
 
 def diagnostics_of(tag: PluginTag) -> list[Diagnostic]:

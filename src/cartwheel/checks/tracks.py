@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,9 +12,13 @@ from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.model import Element
+from cartwheel.description.model import PluginTag
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.classic.drives.tracked_vehicle import (
+    SimpleTrackedVehicle,
+    SimpleTracksParameters,
+)
 from cartwheel.dialects.gz.vehicles.tracked_vehicle import (
     TrackedVehicleParameters,
     TrackedVehicleSystem,
@@ -29,21 +34,25 @@ _LEAST = 0.05
 _SIDES = ("left_track", "right_track")
 
 
+class _Vehicle(NamedTuple):
+    config: TrackedVehicleParameters | SimpleTracksParameters
+    body: str
+    links: list[str]
+    """The links of all tracks."""
+    projected: bool
+    """See `TrackConfig.projected`."""
+
+
 def sliding_tracks(subject: Subject) -> Iterator[Diagnostic]:
     """A steering efficiency that does not fit the tracks of a vehicle."""
     for robot in subject.robots:
         for tag in robot.description.plugins:
-            if plugin_named(tag.filename) is not TrackedVehicleSystem or not robot.is_placed:
+            if not robot.is_placed or (vehicle := _vehicle(robot, tag)) is None:
                 continue
-            try:
-                config, _ = read(TrackedVehicleParameters, tag.element)
-            except PluginError:
+            if not {vehicle.body, *vehicle.links} <= robot.links.keys():
                 continue
-            body = config.body.strip() or robot.description.canonical_link
-            links = [*_links(tag.element)]
-            if body not in robot.links or not all(map(robot.links.__contains__, links)):
-                continue
-            reach = _reach(robot, links, body)
+            config = vehicle.config
+            reach = _reach(robot, vehicle)
             ideal = config.separation / 2
             if reach is None or min(ideal, config.efficiency) <= 0:
                 continue
@@ -63,24 +72,41 @@ def sliding_tracks(subject: Subject) -> Iterator[Diagnostic]:
             )
 
 
-def _links(plugin: Element) -> Iterator[str]:
-    for side in _SIDES:
-        for track in plugin.find_all(side):
-            link = track.find("link")
-            if link is not None:
-                yield link.text.strip()
+def _vehicle(robot: Robot, tag: PluginTag) -> _Vehicle | None:
+    """The tracks of a plugin; None if it has none."""
+    plugin = plugin_named(tag.filename)
+    try:
+        if plugin is TrackedVehicleSystem:
+            system, _ = read(TrackedVehicleParameters, tag.element)
+            body = system.body.strip() or robot.description.canonical_link
+            links = [
+                link.text.strip()
+                for side in _SIDES
+                for track in tag.element.find_all(side)
+                if (link := track.find("link")) is not None
+            ]
+            return _Vehicle(system, body, links, projected=False)
+        if plugin is SimpleTrackedVehicle:
+            simple, _ = read(SimpleTracksParameters, tag.element)
+            names = (simple.left, simple.right, *simple.left_flippers, *simple.right_flippers)
+            links = [name.strip() for name in names]
+            return _Vehicle(simple, simple.body.strip(), links, projected=True)
+    except PluginError:
+        pass
+    return None
 
 
-def _reach(robot: Robot, links: list[str], body: str) -> float | None:
+def _reach(robot: Robot, vehicle: _Vehicle) -> float | None:
     """Distance from the centre of a turn in place at which the ground has the tracks' speed, m.
 
     Each point of a track drives the vehicle on a circle about the origin of the body, all with the
-    same speed. With the reaction of the ground in proportion to the difference, their torques
-    balance at the sum of the squared distances over the sum of the distances. None without tracks.
+    same speed, or with its component along the circle. With the reaction of the ground in
+    proportion to the difference, their torques balance at the sum of the squared distances over the
+    sum of the distances, or of their components across the vehicle. None without tracks.
     """
-    x, y, _ = robot.links[body].pose.position
-    distances: list[Floats] = []
-    for link in links:
+    x, y, _ = robot.links[vehicle.body].pose.position
+    arms: list[Floats] = []
+    for link in vehicle.links:
         clouds = [solid.placed(robot.links[link].pose) for solid in robot.collisions[link]]
         if not clouds:
             return None
@@ -88,8 +114,10 @@ def _reach(robot: Robot, links: list[str], body: str) -> float | None:
         low = points[points[:, 2] <= points[:, 2].min() + _TOUCHING][:, :2]
         angles = (np.arange(_DIRECTIONS) + 0.5) * 2 * math.pi / _DIRECTIONS
         corners = low[np.unique((low @ np.stack([np.cos(angles), np.sin(angles)])).argmax(axis=0))]
-        distances.append(np.hypot(*(corners - (x, y)).T))
-    if not distances:
+        arms.append(corners - (x, y))
+    if not arms:
         return None
-    every = np.concatenate(distances)
-    return float((every**2).sum() / every.sum()) if every.sum() > 0 else None
+    every = np.concatenate(arms)
+    squares = (every**2).sum(axis=1)
+    parts = np.abs(every[:, 1]) if vehicle.projected else np.sqrt(squares)
+    return float(squares.sum() / parts.sum()) if parts.sum() > 0 else None

@@ -22,11 +22,11 @@ from cartwheel.dialects.substitutes import substitute
 from cartwheel.dialects.tags import tags_of
 from cartwheel.dialects.world_plugins import (
     BUILT_IN,
-    DISPLAY_ONLY,
+    WITHOUT_EFFECT,
     Faults,
     create,
-    display_only,
     misplaced,
+    without_effect,
 )
 from cartwheel.errors import CartwheelError, StaticModelError
 from cartwheel.options import plugin_file
@@ -68,8 +68,8 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             own_system = in_world and short_name(tag.filename).startswith("gz-sim-")
             if plugin is None and short_name(tag.filename) in BUILT_IN:
                 continue
-            if plugin is None and short_name(tag.filename) in DISPLAY_ONLY:
-                part.report(display_only(tag))
+            if plugin is None and short_name(tag.filename) in WITHOUT_EFFECT:
+                part.report(without_effect(tag))
             elif plugin is None:
                 _report_unknown(part, tag, sensor, more)
             elif plugin.for_world or (plugin.for_sensor and sensor is None):

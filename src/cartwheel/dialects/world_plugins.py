@@ -46,13 +46,21 @@ DISPLAY_ONLY = frozenset(
     }
 )
 """Plugins that only change what Gazebo's window shows."""
+KEYS_OF_WINDOW = frozenset({"KeysToCmdVelPlugin"})
+"""Plugins that convert keys, which are pressed in Gazebo's window, to velocity commands."""
+WITHOUT_EFFECT = DISPLAY_ONLY | KEYS_OF_WINDOW
 
 
-def display_only(tag: PluginTag) -> Diagnostic:
-    """Returns the note about a plugin that only changes what Gazebo's window shows."""
+def without_effect(tag: PluginTag) -> Diagnostic:
+    """Returns the note about a plugin that only concerns Gazebo's window."""
+    reads_keys = short_name(tag.filename) in KEYS_OF_WINDOW
+    does = "reads keys from Gazebo's window" if reads_keys else "changes what Gazebo's window shows"
     return devices.PLUGIN_UNKNOWN.diagnostic(
-        f'plugin "{tag.filename}" only changes what Gazebo\'s window shows, so it has no effect',
+        f'plugin "{tag.filename}" only {does}, so it has no effect',
         origin=tag.origin,
+        hint="Drive the model with the keys of the web interface or of `cartwheel teleop`."
+        if reads_keys
+        else "",
         values={"name": tag.filename},
         mark=tag.filename,
     )
@@ -149,8 +157,8 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
         name = short_name(tag.filename)
         if name in BUILT_IN:
             continue
-        if name in DISPLAY_ONLY:
-            part.report(display_only(tag))
+        if name in WITHOUT_EFFECT:
+            part.report(without_effect(tag))
             continue
         plugin = plugin_named(tag.filename, shared.get(PluginFiles).classes)
         if plugin is None:

@@ -283,7 +283,12 @@ class Part(MotorRequests):
             entry.tracks,
             entry.felt,
         )
-        tables: tuple[dict[str, Any], ...] = (entry.motors, entry.mimics, entry.slips)
+        tables: tuple[dict[str, Any], ...] = (
+            entry.motors,
+            entry.mimics,
+            entry.slips,
+            entry.grips,
+        )
         lengths = [len(each) for each in lists]
         copies = [dict(each) for each in tables]
         try:

@@ -29,7 +29,7 @@ from cartwheel.simulation.handles import (
 from cartwheel.simulation.sensing.rays import RayHandle
 from cartwheel.world.additions import Addition
 from cartwheel.world.build import DEFAULT_STEP
-from cartwheel.world.entry import CameraMount, ModelEntry, scoped
+from cartwheel.world.entry import CameraMount, Grip, ModelEntry, scoped
 from cartwheel.world.tyres import axle_of
 
 
@@ -182,6 +182,15 @@ class Requests:
     def feel(self, link: str) -> None:
         """Keeps bodies in contact with the link awake, because sleeping bodies exert no force."""
         self._entry.felt.append(link)
+
+    def grip(self, link: str, grip: Grip, *, origin: Origin | None = None) -> None:
+        """Gives a link a friction in place of that in its description.
+
+        Raises:
+            UnknownNameError: The link does not exist; the error has this `origin`.
+        """
+        self.link(link, origin=origin)
+        self._entry.grips[link] = grip
 
     def slip(self, link: str, *, radius: float, origin: Origin | None = None) -> SlipHandle:
         """A wheel's slip on the ground.

@@ -217,7 +217,10 @@ class BodyBuilder:
             add_light(body, scoped(entry.name, link.name, light.name), light)
         if axle is not None and link.name in entry.slips:
             body = _add_tyre(entry, body, link, axle)
-        for collision in link.collisions if self._collisions else ():
+        for described in link.collisions if self._collisions else ():
+            collision = described
+            if (grip := entry.grips.get(link.name)) is not None:
+                collision = replace(described, surface=grip.given_to(described.surface))
             name = scoped(entry.name, link.name, collision.name)
             shape, place = self._rounded(entry, link, collision, None if turntable else axle)
             there = link.pose @ place

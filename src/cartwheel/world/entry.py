@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription
+from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription, Surface
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.world.motion import Motion
 
@@ -89,6 +89,26 @@ class CameraMount:
     intrinsics: CameraIntrinsics
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Grip:
+    """The friction of a link, in place of that in the description."""
+
+    mu1: float | None
+    """None: as described, as for `mu2`."""
+    mu2: float | None
+    direction: tuple[str, Vec3] | None
+    """A link, and the direction in its axes in which mu1 applies; None: as described."""
+
+    def given_to(self, surface: Surface) -> Surface:
+        """A surface with this friction."""
+        mu1 = surface.mu1 if self.mu1 is None else self.mu1
+        mu2 = surface.mu2 if self.mu2 is None else self.mu2
+        fdir1, frame = surface.fdir1, surface.fdir1_frame
+        if self.direction is not None:
+            frame, fdir1 = self.direction
+        return replace(surface, mu1=mu1, mu2=mu2, fdir1=fdir1, fdir1_frame=frame)
+
+
 @dataclass(kw_only=True, slots=True)
 class ModelEntry:
     """A model in the world."""
@@ -107,6 +127,8 @@ class ModelEntry:
     cameras: list[CameraMount] = field(default_factory=list)
     slips: dict[str, float] = field(default_factory=dict)
     """Wheels with slipping tyres by link, with their radius in m; see `SlipHandle`."""
+    grips: dict[str, Grip] = field(default_factory=dict)
+    """Friction that plugins state, by link."""
     tracks: list[str] = field(default_factory=list)
     """Links whose surface moves along itself; see `SurfaceHandle`."""
     felt: list[str] = field(default_factory=list)
@@ -125,6 +147,7 @@ class ModelEntry:
             drives=list(self.drives),
             cameras=list(self.cameras),
             slips=dict(self.slips),
+            grips=dict(self.grips),
             tracks=list(self.tracks),
             felt=list(self.felt),
             attachments=list(self.attachments),

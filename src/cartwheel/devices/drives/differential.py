@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -13,6 +14,7 @@ from cartwheel.devices.drives.kinematics import rim_speeds
 from cartwheel.devices.drives.limiter import NO_LIMITS, Limiter, Limits
 from cartwheel.devices.drives.odometry import planar_motion
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
+from cartwheel.devices.elementwise import clamp
 from cartwheel.devices.ramp import ramp
 
 
@@ -40,6 +42,8 @@ class DifferentialDriveConfig:
     """The wheels. The first pair's separation and radii are used for the odometry."""
     max_torque: float | None = None
     """Maximum torque of each wheel, N m; None: the joints' effort limits."""
+    max_rim_speed: float = math.inf
+    """Maximum commanded rim speed of the wheels, m/s."""
     acceleration: float = 0.0
     """Maximum acceleration of the wheels' commanded rim speed, m/s²; 0: no limit."""
     linear: Limits = NO_LIMITS
@@ -234,8 +238,9 @@ class DifferentialDrive(Drive):
         self.reckoning.restart()
 
     def _set_targets(self, forward: float, turn: float) -> None:
+        most = self._config.max_rim_speed
         self._targets = [
-            speed
+            clamp(speed, -most, most)
             for pair in self._config.pairs
             for speed in rim_speeds(forward, turn, pair.separation)
         ]

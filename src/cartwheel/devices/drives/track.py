@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from cartwheel.component import Component, Scope
-from cartwheel.devices.drives.limiter import Limiter, Limits
+from cartwheel.devices.drives.limiter import NO_LIMITS, Limiter, Limits
 from cartwheel.devices.periodic import Elapsed
-from cartwheel.geometry import Array, Quat, matrix_from_quat
+from cartwheel.geometry import Array, Quat, Vec3, matrix_from_quat
 from cartwheel.messages import header, zero
 from cartwheel.simulation.dynamics.moving_surface import SurfaceContacts
 
@@ -28,22 +28,31 @@ _ODOMETRY = "nav_msgs/msg/Odometry"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class TrackTopics:
+    velocity: str
+    """Topic of the velocity (Float64), m/s."""
+    centre: str
+    """Topic of the point about which the vehicle turns (Vector3), in the world, m. A point that is
+    not finite means straight ahead."""
+    odometry: str
+    """Topic of the distance and the velocity of the track (Odometry)."""
+    odometry_rate: float
+    """Publish rate, Hz; 0: every step."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class TrackConfig:
     link: str
     """Link whose collisions are the track."""
     orientation: Quat
     """Axes of the track in the link: the track turns about y, and a vehicle moves along x."""
-    velocity_topic: str
-    """Topic of the velocity (Float64), m/s."""
-    centre_topic: str
-    """Topic of the point about which the vehicle turns (Vector3), in the world, m. A point that is
-    not finite means straight ahead."""
-    odometry_topic: str
-    """Topic of the distance and the velocity of the track (Odometry)."""
-    odometry_rate: float
-    """Publish rate, Hz; 0: every step."""
-    limits: Limits
+    topics: TrackTopics | None
+    """Topics of the commands and of the odometry; None: the owner calls `Track.command`."""
+    limits: Limits = NO_LIMITS
     """Limits on the velocity of the track."""
+    projected: bool = False
+    """Whether the velocity of a point in a turn is only the component of the track's velocity in
+    the direction of the point's motion, as in Gazebo Classic."""
     timeout: float | None = None
     """Time after which a command expires, s; None: never."""
 
@@ -67,17 +76,18 @@ class Track(Component):
         self._axes = matrix_from_quat(config.orientation)
         self._limiter = Limiter(config.limits)
         self._clear()
-        self.subscribe(config.velocity_topic, "std_msgs/msg/Float64", self._on_velocity)
-        self.subscribe(
-            config.centre_topic, "geometry_msgs/msg/Vector3", self._on_centre, unset=True
-        )
-        self._odometry = self.advertise(
-            config.odometry_topic, _ODOMETRY, rate=config.odometry_rate or None
-        )
         # The forward pass in between is that of the step, so it costs nothing. Its contacts result
         # in the motion during the next step: a pass must only depend on what was set before.
         part.schedule(0, before=self._apply, after=self._move)
-        part.schedule(config.odometry_rate, after=self._publish, topics=self.publishers)
+        if config.topics is not None:
+            self._listen(config.topics)
+
+    def _listen(self, topics: TrackTopics) -> None:
+        self.subscribe(topics.velocity, "std_msgs/msg/Float64", self._on_velocity)
+        self.subscribe(topics.centre, "geometry_msgs/msg/Vector3", self._on_centre, unset=True)
+        rate = topics.odometry_rate
+        self._odometry = self.advertise(topics.odometry, _ODOMETRY, rate=rate or None)
+        self.part.schedule(rate, after=self._publish, topics=self.publishers)
 
     def reset(self) -> None:
         super().reset()
@@ -98,14 +108,27 @@ class Track(Component):
         self.distance = 0.0
         """Distance that the track moved, m."""
 
+    def command(self, velocity: float, centre: Vec3) -> None:
+        """Moves the track.
+
+        Args:
+            velocity: Velocity, m/s.
+            centre: Centre of the vehicle's turn in the world, m; infinite: straight ahead.
+        """
+        self._velocity = velocity
+        self._turn_about(centre)
+
+    def _turn_about(self, centre: Vec3) -> None:
+        point = np.array(centre)
+        self._centre = point if np.isfinite(point).all() else None
+        self._received_ns = self.part.time_ns
+
     def _on_velocity(self, message: Any) -> None:
         self._velocity = float(message.data)
         self._received_ns = self.part.time_ns
 
     def _on_centre(self, message: Any) -> None:
-        centre = np.array([float(message.x), float(message.y), float(message.z)])
-        self._centre = centre if np.isfinite(centre).all() else None
-        self._received_ns = self.part.time_ns
+        self._turn_about((float(message.x), float(message.y), float(message.z)))
 
     def _apply(self) -> None:
         if self._motions:
@@ -124,7 +147,9 @@ class Track(Component):
         _, turned = self._link.place()
         axes = matrix_from_quat(turned) @ self._axes
         contacts = self._surface.contacts()
-        moves = travel(velocity, contacts, axes[:, 1], self._centre)
+        moves = travel(
+            velocity, contacts, axes[:, 1], self._centre, projected=self._config.projected
+        )
         self._motions = []
         for number, (each, move) in enumerate(zip(contacts, moves, strict=True)):
             if len(each.normals):
@@ -159,6 +184,8 @@ def travel(
     contacts: Sequence[SurfaceContacts],
     axle: Array,
     centre: Array | None,
+    *,
+    projected: bool = False,
 ) -> list[Array]:
     """Returns how the vehicle should move at each contact of a track, in the world, m/s.
 
@@ -172,6 +199,7 @@ def travel(
         contacts: The contacts of each collision.
         axle: Axis about which the track turns, a unit vector in the world, shape (3,).
         centre: Centre of the turn in the world, m; None: straight ahead.
+        projected: See `TrackConfig.projected`.
 
     Returns:
         For each collision, shape (n, 3).
@@ -185,8 +213,9 @@ def travel(
         # Velocity per yaw rate.
         around = np.cross(normals, positions - centre)
         squares = float((around * around).sum())
-        same = np.sign((around * along).sum(axis=1, keepdims=True))
-        reach = np.linalg.norm(around, axis=1).sum()
+        components = (around * along).sum(axis=1, keepdims=True)
+        same = np.sign(components)
+        reach = abs(components).sum() if projected else np.linalg.norm(around, axis=1).sum()
         rate = abs(velocity) * reach / squares if squares > 0 else 0.0
         moves = rate * np.sign(velocity) * same * around
     ends = np.cumsum([len(each.positions) for each in contacts])

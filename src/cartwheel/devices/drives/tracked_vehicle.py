@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -13,19 +14,18 @@ from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.kinematics import axle_motion
 from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
+from cartwheel.devices.drives.track import Track, TrackConfig
+from cartwheel.devices.elementwise import clamp
 from cartwheel.geometry import Vec3, rotate
 from cartwheel.messages import message_class
 
 _FLOAT = "std_msgs/msg/Float64"
 _VECTOR = "geometry_msgs/msg/Vector3"
-_STRAIGHT = 1e-6
-"""Velocity in m/s or rad/s below which there is none."""
 _LEAST_EFFICIENCY = 1e-3
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class TrackTopics:
-    """Topics of a track; see `Track`."""
+class CommandTopics(NamedTuple):
+    """Topics of a track that another plugin moves; see `TrackTopics`."""
 
     velocity: str
     centre: str
@@ -35,14 +35,18 @@ class TrackTopics:
 class TrackedVehicleConfig:
     body: str
     """Link about whose origin the vehicle turns in place."""
-    left: tuple[TrackTopics, ...]
-    right: tuple[TrackTopics, ...]
+    left: tuple[CommandTopics | TrackConfig, ...]
+    right: tuple[CommandTopics | TrackConfig, ...]
     separation: float
     """Distance between the left and the right tracks, m."""
     efficiency: float
     """Initial steering efficiency; see `track_speeds`."""
-    efficiency_topic: str
-    """Topic of the steering efficiency (Float64)."""
+    efficiency_topic: str | None
+    """Topic of the steering efficiency (Float64); None: it is constant."""
+    least: float = 1e-6
+    """Velocity in m/s or rad/s below which there is none."""
+    most: float = math.inf
+    """Maximum speed of the tracks, m/s."""
     linear: Limits
     """Limits on the forward speed."""
     angular: Limits
@@ -62,7 +66,15 @@ class TrackSpeeds(NamedTuple):
     """Distance of the centre of the turn to the left of the vehicle, m; infinite straight ahead."""
 
 
-def track_speeds(forward: float, turn: float, separation: float, efficiency: float) -> TrackSpeeds:
+def track_speeds(
+    forward: float,
+    turn: float,
+    separation: float,
+    efficiency: float,
+    *,
+    least: float = 1e-6,
+    most: float = math.inf,
+) -> TrackSpeeds:
     """Returns what the tracks do for a velocity and a yaw rate. Source: TrackedVehicle of gz-sim.
 
     Args:
@@ -70,22 +82,29 @@ def track_speeds(forward: float, turn: float, separation: float, efficiency: flo
         turn: Yaw rate, rad/s.
         separation: Distance between the left and the right tracks, m.
         efficiency: Yaw rate as a fraction of that of wheels that do not slip.
+        least: Velocity in m/s or rad/s below which there is none.
+        most: Maximum speed of the tracks, m/s.
     """
     half = turn * separation / (2 * efficiency)
+    left, right = forward - half, forward + half
+    if max(abs(left), abs(right)) > most:
+        left, right = clamp(left, -most, most), clamp(right, -most, most)
+        forward, turn = (left + right) / 2, (right - left) * efficiency / separation
     radius = math.inf
-    if abs(turn) >= _STRAIGHT:
-        radius = 0.0 if abs(forward) < _STRAIGHT else forward / turn
-    return TrackSpeeds(forward - half, forward + half, radius)
+    if abs(turn) >= least:
+        radius = 0.0 if abs(forward) < least else forward / turn
+    return TrackSpeeds(left, right, radius)
 
 
 class TrackedVehicle(Drive):
     """Commands the tracks of a vehicle from Twist commands, and publishes odometry.
 
-    As in gz-sim, the tracks are commanded only if the command changes, with the centre of the turn
-    at that time. The odometry is that of a differential drive whose rims move like the tracks.
+    As in gz-sim, the tracks of other plugins are commanded only if the command changes, with the
+    centre of the turn at that time. The odometry is that of a differential drive whose rims move
+    like the tracks.
 
     Raises:
-        UnknownNameError: The link does not exist.
+        UnknownNameError: A link does not exist.
     """
 
     def __init__(self, scope: Scope, config: TrackedVehicleConfig) -> None:
@@ -94,15 +113,26 @@ class TrackedVehicle(Drive):
         self._body = self.part.link(config.body, origin=self.origin)
         self._linear, self._angular = Limiter(config.linear), Limiter(config.angular)
         self._reckoning = DeadReckoning()
-        self._velocities, self._centres = (
-            [
-                [self.advertise(getattr(track, name), kind) for track in side]
-                for side in (config.left, config.right)
-            ]
-            for name, kind in (("velocity", _FLOAT), ("centre", _VECTOR))
-        )
-        self.subscribe(config.efficiency_topic, _FLOAT, self._on_efficiency)
+        sides = (config.left, config.right)
+        self._owns = any(isinstance(track, TrackConfig) for side in sides for track in side)
+        self._tracks = [[self._mover(track) for track in side] for side in sides]
+        if config.efficiency_topic is not None:
+            self.subscribe(config.efficiency_topic, _FLOAT, self._on_efficiency)
         self.run(config.drive)
+
+    def _mover(self, track: CommandTopics | TrackConfig) -> Callable[[float, Vec3], None]:
+        """Returns the function that moves a track with a velocity about a centre."""
+        if isinstance(track, TrackConfig):
+            return self.add(Track(self.scope, track)).command
+        Float64, Vector3 = message_class(_FLOAT), message_class(_VECTOR)
+        velocities = self.advertise(track.velocity, _FLOAT)
+        centres = self.advertise(track.centre, _VECTOR)
+
+        def move(velocity: float, centre: Vec3) -> None:
+            velocities.publish(Float64(data=velocity))
+            centres.publish(Vector3(*centre))
+
+        return move
 
     def reset(self) -> None:
         super().reset()
@@ -127,9 +157,18 @@ class TrackedVehicle(Drive):
         config, before = self._config, (self._linear.value, self._angular.value)
         forward = float(self._linear.step(self._command[0], seconds))
         turn = float(self._angular.step(self._command[1], seconds))
-        if self._is_new or (forward, turn) != before:
+        is_new = self._is_new or (forward, turn) != before
+        if is_new:
             self._is_new = False
-            self._speeds = track_speeds(forward, turn, config.separation, self._efficiency)
+            self._speeds = track_speeds(
+                forward,
+                turn,
+                config.separation,
+                self._efficiency,
+                least=config.least,
+                most=config.most,
+            )
+        if is_new or self._owns:
             self._send()
         left, right, _ = self._speeds
         distance, angle = axle_motion(left * seconds, right * seconds, config.separation)
@@ -137,13 +176,10 @@ class TrackedVehicle(Drive):
 
     def _send(self) -> None:
         speeds = self._speeds
-        Float64, Vector3 = message_class(_FLOAT), message_class(_VECTOR)
         centre = self._centre(speeds.radius)
-        for side, speed in enumerate((speeds.left, speeds.right)):
-            for publisher in self._velocities[side]:
-                publisher.publish(Float64(data=speed))
-            for publisher in self._centres[side]:
-                publisher.publish(Vector3(*centre))
+        for moves, speed in zip(self._tracks, (speeds.left, speeds.right), strict=True):
+            for move in moves:
+                move(speed, centre)
 
     def _centre(self, radius: float) -> Vec3:
         """The centre of the turn in the world, m; infinite straight ahead."""

@@ -52,12 +52,13 @@ class SurfaceHandle:
     def __init__(self, model: str, link: str) -> None:
         self.model_name = model
         self.name = link
+        self._geoms: list[int] = []
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""
         self._model, self._data = model, data
         body = mujoco.mj_name2id(model, _OBJ.mjOBJ_BODY, scoped(self.model_name, self.name))
-        self._geoms: list[int] = np.flatnonzero(
+        self._geoms = np.flatnonzero(
             (model.geom_bodyid == body) & ((model.geom_contype | model.geom_conaffinity) != 0)
         ).tolist()
         kinds = {geom: int(model.geom_type[geom]) for geom in self._geoms}
@@ -68,7 +69,9 @@ class SurfaceHandle:
         model.flg_surfacevel = True
 
     def stop(self) -> None:
-        """Stops the surfaces."""
+        """Stops the surfaces; none move before the model is compiled."""
+        if not self._geoms:
+            return
         self._model.geom_surfacevel[self._geoms] = 0.0
 
     def contacts(self) -> list[SurfaceContacts]:

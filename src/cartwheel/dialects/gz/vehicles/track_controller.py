@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.drives.track import Track, TrackConfig
+from cartwheel.devices.drives.track import Track, TrackConfig, TrackTopics
 from cartwheel.dialects.gz.bridge_file import namespaced
 from cartwheel.dialects.gz.drive_tags import common_limits, gz_name, limit_tag, report_limits
 from cartwheel.dialects.plugin import Plugin
@@ -103,10 +103,12 @@ class TrackController(Plugin[TrackControllerParameters]):
                 TrackConfig(
                     link=link,
                     orientation=quat_from_rpy(*config.orientation),
-                    velocity_topic=velocity,
-                    centre_topic=centre,
-                    odometry_topic=gz_name(self, odometry, ""),
-                    odometry_rate=config.rate,
+                    topics=TrackTopics(
+                        velocity=velocity,
+                        centre=centre,
+                        odometry=gz_name(self, odometry, ""),
+                        odometry_rate=config.rate,
+                    ),
                     limits=common_limits(config),
                     timeout=config.max_command_age,
                 ),

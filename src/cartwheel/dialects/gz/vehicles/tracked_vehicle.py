@@ -9,9 +9,9 @@ from typing import ClassVar
 from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.devices.drives.tracked_vehicle import (
+    CommandTopics,
     TrackedVehicle,
     TrackedVehicleConfig,
-    TrackTopics,
 )
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.gz.drive_tags import (
@@ -131,7 +131,7 @@ class TrackedVehicleSystem(Plugin[TrackedVehicleParameters]):
             )
         )
 
-    def _tracks(self, name: str) -> Iterator[TrackTopics]:
+    def _tracks(self, name: str) -> Iterator[CommandTopics]:
         """Yields the topics of the tracks on one side.
 
         Raises:
@@ -148,7 +148,7 @@ class TrackedVehicleSystem(Plugin[TrackedVehicleParameters]):
                 link,
                 *(_text(element, each) for each in ("velocity_topic", "center_of_rotation_topic")),
             )
-            yield TrackTopics(velocity=velocity, centre=centre)
+            yield CommandTopics(velocity=velocity, centre=centre)
 
     def _check_link(self, element: Element, link: str) -> None:
         """Warns about a track that nothing moves."""
