@@ -6,7 +6,7 @@ import contextlib
 import functools
 import weakref
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -132,6 +132,11 @@ class Session:
         """How each model was spawned, by its name."""
         self.originals: weakref.WeakKeyDictionary[object, Any] = weakref.WeakKeyDictionary()
         """For each saved state, the objects that were saved; see `cartwheel.saving`."""
+        models = tuple(
+            with_published_control(each, package_path=package_path) for each in world.models
+        )
+        if any(one is not other for one, other in zip(models, world.models, strict=True)):
+            world = replace(world, models=models)
         # Without a reference to the session, because the simulation would keep it alive.
         types, shared = self.types, self.shared
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -14,6 +14,7 @@ from cartwheel.description import load_robot, load_world
 from cartwheel.description.files.named_files import bundled_worlds
 from cartwheel.description.launches import LaunchedModel, LaunchStart, LaunchUse, read_launch
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.dialects.ros_control.selection import published_by
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
 from cartwheel.options import WORLD
@@ -81,10 +82,13 @@ def open_launch(
         opened = load_world(world, package_path=package_path)
     else:
         opened = _world(start, package_path, found)
-    names = {each.name for each in opened.models}
-    models = []
+    shown = [each for each in start.models if each.is_shown]
+    opened, models = _out_of_world(opened, shown, package_path)
+    names = {each.name for each in (*opened.models, *(each.description for each in models))}
     robots: dict[object, RobotDescription] = {}
     for each in start.models:
+        if models and each.is_shown:
+            continue
         # Several models may have the same description.
         key = (each.description, frozenset(each.use.arguments.items()))
         if key not in robots:
@@ -105,6 +109,34 @@ def open_launch(
         file=file,
         diagnostics=tuple(found),
     )
+
+
+def _out_of_world(
+    world: WorldDescription, shown: Sequence[LaunchedModel], package_path: Sequence[Path]
+) -> tuple[WorldDescription, list[Start]]:
+    """Spawns the models of the world that have a controller manager, with their controllers.
+
+    The launch file publishes their description for the controller manager and does not spawn it.
+
+    Args:
+        world: The world of the launch file.
+        shown: The descriptions that the launch file publishes, but does not spawn.
+        package_path: Folders to search for packages first.
+
+    Returns:
+        The world without these models, and the models.
+    """
+    found: dict[str, Start] = {}
+    for model in world.models:
+        for each in shown:
+            robot = published_by(model, each.use, package_path)
+            if robot is not None:
+                found[model.name] = Start(description=robot, namespace="", controllers=each.use)
+                break
+    if not found:
+        return world, []
+    rest = tuple(each for each in world.models if each.name not in found)
+    return replace(world, models=rest), list(found.values())
 
 
 def _refused(file: Path, name: str) -> Diagnostic:

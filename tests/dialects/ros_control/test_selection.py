@@ -124,6 +124,94 @@ def test_a_model_with_its_own_hardware_or_without_controllers_stays_as_it_is(mod
     assert with_published_control(other) is other
 
 
+WORLD = '<sdf version="1.9"><world name="hall">{}</world></sdf>'
+STARTED = """<launch>
+  <param name="robot_description" command="xacro $(find arm)/robots/other.urdf"/>
+  <include file="$(find gazebo_ros)/launch/empty_world.launch">
+    <arg name="world_name" value="{place}/worlds/hall.world"/>
+  </include>
+  <rosparam file="$(find arm)/config/good.yaml"/>
+  <node pkg="controller_manager" type="spawner" name="s" args="good"/>
+</launch>"""
+
+
+def in_world(plugin, *, x=0.0):
+    """A world that contains the model."""
+    held = SDF.format(plugin=plugin).replace(
+        '<model name="arm">', f"<model name='arm'><pose>{x} 0 0 0 0 0</pose>"
+    )
+    return WORLD.format(held.partition(">")[2].removesuffix("</sdf>"))
+
+
+@pytest.mark.parametrize("name", ["worlds__arm_dot_urdf", "urdf__arm_dot_urdf_dot_xacro"])
+def test_the_urdf_of_a_model_in_a_world_lists_the_joints_of_its_controllers(model, name):
+    urdf = robot(beam("beam", "world") + SYSTEM, "")
+    path = model(ROS2, **{name: urdf}).parents[2]
+    world_file = path / "worlds/hall.world"
+    world_file.parent.mkdir(exist_ok=True)
+    world_file.write_text(in_world(ROS2.format(file=path / "config/arm.yaml")))
+    with cw.World(world_file) as world:
+        assert len(coded(world, CONTROL_ELSEWHERE)) == 1
+        world.publish("/arm_controller/commands", data=[0.5])
+        world.run(1.0)
+        assert world.model("arm").joint("beam_joint") == pytest.approx(0.5, abs=1e-3)
+
+
+@pytest.mark.parametrize("place", ["$(find arm)", "/home/them/ws/src/arm"])
+def test_a_launch_file_starts_the_controllers_of_a_model_in_its_world(model, place):
+    """The world is in the package, although its path may be that of another computer."""
+    held = transmission("beam_joint", "Position")
+    path = model(
+        ROS1,
+        launch__hall_dot_launch=STARTED.format(place=place),
+        worlds__hall_dot_world=in_world(ROS1, x=2.0),
+        robots__other_dot_urdf=robot(beam("beam", "world") + held, ""),
+        config__good_dot_yaml=ONE.format(name="good", joint="beam"),
+    ).parents[2]
+    with cw.launch(path / "launch/hall.launch") as world:
+        assert world.models == ("arm",)
+        assert len(coded(world, CONTROL_ELSEWHERE)) == 1
+        assert world.model("arm").pose.x == pytest.approx(2.0)
+        world.publish("/good/command", data=0.5)
+        world.run(1.0)
+        assert world.model("arm").joint("beam_joint") == pytest.approx(0.5, abs=1e-3)
+
+
+def test_it_starts_those_of_a_model_that_lists_its_joints_itself(model):
+    path = model(
+        ROS1,
+        launch__hall_dot_launch=STARTED.format(place="$(find arm)")
+        .replace("other.urdf", "arm.urdf")
+        .replace("good.yaml", "arm.yaml")
+        .replace("good", "arm_controller"),
+        worlds__hall_dot_world=in_world(
+            SYSTEM + '<plugin filename="gz_ros2_control-system" name="control"/>'
+        ),
+        robots__arm_dot_urdf=robot(beam("beam", "world"), ""),
+    ).parents[2]
+    with cw.launch(path / "launch/hall.launch") as world:
+        assert world.models == ("arm",)
+        world.publish("/arm_controller/commands", data=[0.5])
+        world.run(1.0)
+        assert world.model("arm").joint("beam_joint") == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_launch_file_that_describes_another_robot_leaves_the_world_as_it_is(model):
+    held = transmission("other_joint", "Position")
+    path = model(
+        ROS1,
+        launch__hall_dot_launch=STARTED.format(place="$(find arm)"),
+        worlds__hall_dot_world=in_world(ROS1),
+        robots__other_dot_urdf=robot(beam("other", "world") + held, "").replace(
+            'name="arm"', 'name="second"'
+        ),
+        config__good_dot_yaml=ONE.format(name="good", joint="beam"),
+    ).parents[2]
+    with cw.launch(path / "launch/hall.launch") as world:
+        assert not coded(world, CONTROL_ELSEWHERE)
+        assert world.models == ("arm", "second")
+
+
 STARTER = """<launch>
   <param name="robot_description" command="xacro $(find arm)/robots/arm.urdf"/>
   <rosparam file="$(find arm)/config/good.yaml"/><rosparam file="$(find arm)/config/bad.yaml"/>

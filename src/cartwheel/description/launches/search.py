@@ -112,6 +112,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 spawned=tuple(dict.fromkeys(facts.spawned)),
                 simulated=facts.simulated,
                 guessed=description is not None and _is_whole(description.name, words),
+                world=facts.world,
             )
         )
     return found

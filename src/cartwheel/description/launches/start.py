@@ -112,6 +112,8 @@ def read_launch(
     if not world and file.suffix == ".py":
         # Included launch files inherit the arguments, such as `world` of gazebo.launch.py.
         world = arguments.get("world", facts.defaults.get("world", ""))
+    if Path(world).is_absolute() and UNKNOWN not in world:
+        world = str(facts.here(Path(world)))
     lost = [spawn for spawn, use in found if use is None]
     return LaunchStart(
         file=file,

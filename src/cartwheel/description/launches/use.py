@@ -93,6 +93,8 @@ class LaunchUse:
     guessed: bool = False
     """Whether an argument is the whole name of the description, which is not its default. It may
     then be any file, also one that is not a robot."""
+    world: str = ""
+    """The world that it starts, as it is stated; empty if there is none."""
 
 
 def _is_single(file: Path) -> bool:
@@ -200,7 +202,7 @@ class Facts:
             return ABSENT
         number = len(self.descriptions)
         if UNKNOWN not in file.name:
-            file = self._here(file)
+            file = self.here(file)
             if is_file(file):
                 self.descriptions.append((file, dict(arguments)))
         elif re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")):
@@ -224,7 +226,7 @@ class Facts:
             if self.published.get(key, ABSENT) == ABSENT:
                 self.published[key] = number
 
-    def _here(self, file: Path) -> Path:
+    def here(self, file: Path) -> Path:
         """A file where it is in the sources, although the launch file names another place.
 
         An absolute path may be that on another computer, such as ~/ws/src/bot/bot.urdf, and

@@ -36,7 +36,8 @@ from cartwheel.dialects.ros_control.suggestion import (
 )
 from cartwheel.errors import CartwheelError, Diagnostic, Origin, PluginError
 
-_SUFFIX = ".sdf"
+_SUFFIXES = frozenset({".sdf", ".world"})
+"""Ends of the names of SDF files, which another one may follow, as in ``arena.world.xacro``."""
 _TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", ".world")
 """Ends of the names of files that may contain parameters of controllers, also within a tag."""
 _MOST_TEXTS = 2000
@@ -214,8 +215,9 @@ def with_published_control(
 ) -> RobotDescription:
     """An SDF model with the hardware of the URDF from which it was made; otherwise the same robot.
 
-    The URDF is one that a launch file names, first one in the same launch file, or has the name of
-    the model or of its folder and is beside it. Its hardware must list only joints of the model.
+    The URDF is one that a launch file names, first one in the launch file that spawns the model or
+    starts its world, or has the name of the model or of its folder and is beside it. Its hardware
+    must list only joints of the model.
 
     Args:
         robot: The robot.
@@ -223,41 +225,75 @@ def with_published_control(
         package_path: Folders to search for packages first.
     """
     file = Path(robot.origin.file)
-    listed = robot.ros2_control or robot.transmissions
-    if file.suffix != _SUFFIX or listed or not is_controlled(robot):
+    if not _lacks_hardware(robot):
         return robot
     if launches is None:
         folder = root_of(file)
         launches = () if folder is None else launches_near(folder, package_path)
-    joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
     seen: set[Path] = set()
     for path, arguments in itertools.islice(_candidates(robot, file, launches), _MOST):
-        if path.resolve() in seen:
-            continue
-        seen.add(path.resolve())
-        try:
-            other = load_robot(path, arguments=arguments, package_path=package_path)
-        except CartwheelError:
-            continue
-        names = {
-            (joint.attribute("name") or "").strip()
-            for held in (*other.ros2_control, *other.transmissions)
-            for joint in held.find_all("joint")
-        }
-        if names and names <= joints:
-            note = CONTROL_ELSEWHERE.diagnostic(
-                f'controllers command the joints that "{path.name}" lists, because Gazebo reads '
-                "them from the parameter robot_description, not from the SDF",
-                origin=robot.origin,
-                values={"file": str(path), "joints": tuple(sorted(names))},
-            )
-            return replace(
-                robot,
-                ros2_control=other.ros2_control,
-                transmissions=other.transmissions,
-                diagnostics=(*robot.diagnostics, note),
-            )
+        if path.resolve() not in seen:
+            seen.add(path.resolve())
+            found = _with_hardware_of(robot, path, arguments, package_path)
+            if found is not None:
+                return found
     return robot
+
+
+def published_by(
+    robot: RobotDescription, use: LaunchUse, package_path: Sequence[Path] = ()
+) -> RobotDescription | None:
+    """A model of a launch file's world for which it publishes a description, with its hardware.
+
+    None if the model has no controller manager, or if the description is that of another model.
+
+    Args:
+        robot: A model of the world.
+        use: The launch file, with a description that it does not spawn.
+        package_path: Folders to search for packages first.
+    """
+    if use.description is None or not is_controlled(robot):
+        return None
+    if _lacks_hardware(robot):
+        return _with_hardware_of(robot, use.description, dict(use.arguments), package_path)
+    return robot if use.description.name.split(".")[0] == robot.name else None
+
+
+def _lacks_hardware(robot: RobotDescription) -> bool:
+    """Whether an SDF model has a controller manager, but lists no joints for it."""
+    if robot.ros2_control or robot.transmissions:
+        return False
+    return not _SUFFIXES.isdisjoint(Path(robot.origin.file).suffixes) and is_controlled(robot)
+
+
+def _with_hardware_of(
+    robot: RobotDescription, path: Path, arguments: dict[str, str], package_path: Sequence[Path]
+) -> RobotDescription | None:
+    """A model with the hardware of another description; None if this is that of another robot."""
+    try:
+        other = load_robot(path, arguments=arguments, package_path=package_path)
+    except CartwheelError:
+        return None
+    joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
+    names = {
+        (joint.attribute("name") or "").strip()
+        for held in (*other.ros2_control, *other.transmissions)
+        for joint in held.find_all("joint")
+    }
+    if not names or not names <= joints:
+        return None
+    note = CONTROL_ELSEWHERE.diagnostic(
+        f'controllers command the joints that "{path.name}" lists, because Gazebo reads '
+        "them from the parameter robot_description, not from the SDF",
+        origin=robot.origin,
+        values={"file": str(path), "joints": tuple(sorted(names))},
+    )
+    return replace(
+        robot,
+        ros2_control=other.ros2_control,
+        transmissions=other.transmissions,
+        diagnostics=(*robot.diagnostics, note),
+    )
 
 
 def _candidates(
@@ -267,12 +303,15 @@ def _candidates(
     own = {
         each.file
         for each in launches
-        if each.description is not None and each.description.resolve() == file.resolve()
+        if (each.description is not None and each.description.resolve() == file.resolve())
+        or (each.world and Path(each.world).name == file.name)
     }
     others = [
         each
         for each in launches
-        if each.description is not None and each.description.suffix != _SUFFIX and not each.guessed
+        if each.description is not None
+        and _SUFFIXES.isdisjoint(each.description.suffixes)
+        and not each.guessed
     ]
     for each in sorted(others, key=lambda each: each.file not in own):
         if each.description is not None and (
