@@ -31,6 +31,7 @@ from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Code, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, check_prefix
+from cartwheel.graph.renaming import Bridged
 from cartwheel.graph.topic import Subscription
 from cartwheel.messages import Form, zero
 from cartwheel.messages.library.library import TypeLibrary
@@ -80,7 +81,7 @@ class Session:
         strict: Treat every warning about a file as an error, unless its code is in `ignore`.
         lenient: Skip plugins that cannot be created, for example because a parameter is invalid,
             and report an error, as in `cartwheel run`. Otherwise the model is rejected.
-        bridge: Configuration files of ros_gz_bridge, which define topic names.
+        bridge: Configuration files of ros_gz_bridge, which define topic names, or their entries.
         plugins: Python files that define plugins. They are executed.
         allow_path: Folders with files that clients of the session's services may load.
         package_path: Folders to search for the packages of message types first.
@@ -99,7 +100,7 @@ class Session:
         seed: int = 0,
         strict: bool = False,
         lenient: bool = False,
-        bridge: Sequence[Path] = (),
+        bridge: Sequence[Path | Bridged] = (),
         plugins: Sequence[Path] = (),
         allow_path: Sequence[Path] = (),
         package_path: Sequence[Path] = (),
@@ -117,8 +118,8 @@ class Session:
         self.graph = Graph(types=self.types)
         self.shared = Shared(self.graph)
         """Objects that all components of the simulation share."""
-        for path in bridge:
-            self.shared.renaming.add(read_bridge(path))
+        for entry in bridge:
+            self.shared.renaming.add([entry] if isinstance(entry, Bridged) else read_bridge(entry))
         for path in plugins:
             self._packages.add(path)
         self._packages.add(world.origin.file)

@@ -129,6 +129,9 @@ def test_the_launch_file_starts_the_controllers_that_it_names(package: Path) -> 
         ' arguments=["--ros-args", "-p", ["config_file:=", CONFIG]])',
         'Node(package="ros_gz_bridge", executable="bridge_node",'
         ' parameters=[{"config_file": CONFIG}])',
+        'Node(package="ros_gz_bridge", executable="parameter_bridge", namespace="robot",'
+        ' arguments=["/model/gz/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry"],'
+        ' remappings=[("/model/gz/odometry", "odom")])',
     ],
 )
 def test_topics_have_the_names_that_the_bridge_of_a_launch_file_gives(

@@ -8,6 +8,7 @@ import pytest
 
 from cartwheel.codes.files import LAUNCH_VALUE_UNKNOWN
 from cartwheel.description.launches import LaunchStart, read_launch
+from cartwheel.errors import DescriptionError
 
 
 @pytest.fixture
@@ -122,6 +123,210 @@ DeclareLaunchArgument("space", default_value="one")
     path = written(bot, "a.launch.py", text)
     spaces = {name: space for name, _, space in started(read_launch(path, {}))}
     assert spaces == {"a": "one", "b": "one/sub/arm", "c": "one", "d": ""}
+
+
+GROUPED = """
+def generate_launch_description():
+    first = {one}
+    second = {two}
+    third = {three}
+    later = RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[third]))
+    group = GroupAction(actions=[PushRosNamespace("one"), first, SetParameter("a", "b")])
+    never = GroupAction([PushRosNamespace("two"), second], condition=IfCondition("false"))
+    return LaunchDescription([later, group, never])
+"""
+
+
+def test_an_action_in_a_variable_has_the_namespace_of_the_group_that_contains_it(bot: Path) -> None:
+    text = GROUPED.format(one=spawner("a"), two=spawner("b"), three=spawner("c"))
+    assert started(read_launch(written(bot, "a.launch.py", text), {})) == [
+        ("c", "other.urdf", ""),
+        ("a", "other.urdf", "one"),
+    ]
+
+
+@pytest.mark.parametrize(
+    "collected",
+    [
+        "nodes = [first, other]",
+        "nodes = []\nnodes.append(first)\nnodes.append(other)",
+        "nodes = [*[first], other]",
+    ],
+)
+@pytest.mark.parametrize(
+    "used",
+    [
+        "for number, node in enumerate(nodes, start=1):\n"
+        '    GroupAction([PushRosNamespace(f"s{number}"), nodes[number - 1]])',
+        'GroupAction([PushRosNamespace("s1"), nodes[0]])\n'
+        'GroupAction([PushRosNamespace("s2"), *nodes])',
+        'for space, node in zip(["s1", "s2"], nodes):\n'
+        "    GroupAction([PushRosNamespace(space), node])",
+    ],
+    ids=["enumerate", "starred", "zip"],
+)
+def test_actions_in_lists_have_the_namespaces_of_their_groups(
+    bot: Path, collected: str, used: str
+) -> None:
+    text = f"first = {spawner('a')}\nother = {spawner('b')}\n{collected}\n{used}\n"
+    start = read_launch(written(bot, "a.launch.py", text), {})
+    assert started(start) == [("a", "other.urdf", "s1"), ("b", "other.urdf", "s2")]
+
+
+def test_a_list_of_actions_starts_where_it_is_used(bot: Path) -> None:
+    text = f"""
+nodes = [{spawner("a")}]
+nodes += [{spawner("b")}]
+GroupAction(actions=[PushRosNamespace("one")] + nodes)
+"""
+    start = read_launch(written(bot, "a.launch.py", text), {})
+    assert started(start) == [("a", "other.urdf", "one"), ("b", "other.urdf", "one")]
+
+
+def test_an_action_whose_use_is_unknown_is_started(bot: Path) -> None:
+    text = f"""
+GroupAction([PushRosNamespace("one"), PushRosNamespace("two")])
+spawn = {spawner("a")}
+Composed(entities(lambda: spawn))
+"""
+    start = read_launch(written(bot, "a.launch.py", text), {})
+    assert started(start) == [("a", "other.urdf", "")]
+
+
+@pytest.mark.parametrize(
+    "calls",
+    [
+        'robot("a", "one", x=1.0) + robot("b", x=2.0)',
+        '[OpaqueFunction(function=launched, args=["a"], kwargs={"space": "one", "x": 1.0}),'
+        ' OpaqueFunction(function=launched, args=["b"], kwargs={"x": 2.0})]',
+        "[each for name, space, x in LIST for each in robot(name, space, x=x)]",
+    ],
+    ids=["calls", "opaque functions", "comprehension"],
+)
+def test_functions_of_a_file_are_evaluated_for_their_arguments(bot: Path, calls: str) -> None:
+    node = spawner("NAME").replace('"NAME"', 'name, "-x", str(x)')
+    other = """
+def launched(context, name, space="two", *, x=0.0):
+    return robot(name, space, x=x)"""
+    other = other if "launched" in calls else ""
+    text = f"""
+LIST = [("a", "one", 1.0), ("b", "two", 2.0)]
+def generate_launch_description():
+    return LaunchDescription({calls})
+{other}
+def robot(name, space="two", *, x=0.0):
+    if name == "none":
+        return []
+    spawn = {node}
+    return [GroupAction([PushRosNamespace(space), spawn])]
+"""
+    start = read_launch(written(bot, "a.launch.py", text), {})
+    assert started(start) == [("a", "other.urdf", "one"), ("b", "other.urdf", "two")]
+    assert [dict(each.spawn.place) for each in start.models] == [{"x": 1.0}, {"x": 2.0}]
+
+
+def test_functions_that_call_themselves_end(bot: Path) -> None:
+    text = f"""
+def many(name):
+    return [{spawner("a")}, many(name), many(name), many(name)]
+many("a")
+"""
+    with pytest.raises(DescriptionError):
+        read_launch(written(bot, "a.launch.py", text.replace("other.urdf", "absent.urdf")), {})
+
+
+def test_a_function_returns_the_value_of_its_branch(bot: Path) -> None:
+    text = """
+def file(kind):
+    if kind == "bot":
+        return "bot.xacro"
+    return "other.urdf"
+xacro.process_file(os.path.join(FindPackageShare("bot"), "urdf", file("bot")))
+"""
+    (model,) = read_launch(written(bot, "a.launch.py", text), {}).models
+    assert model.description.name == "bot.xacro"
+
+
+CONTROLLED = """
+def robot(name):
+    return GroupAction([
+        PushRosNamespace(name),
+        Node(package="ros_gz_sim", executable="create", arguments=["-name", name, "-file",
+             os.path.join(FindPackageShare("bot"), "urdf/other.urdf")]),
+        Node(package="controller_manager", executable="spawner", arguments=[name + "_arm",
+             "--param-file", os.path.join(FindPackageShare("bot"), "config", name + ".yaml")]),
+    ])
+robot("one")
+robot("two")
+Node(package="ros_gz_sim", executable="create", arguments=["-name", "three", "-file",
+     os.path.join(FindPackageShare("bot"), "urdf/other.urdf")])
+Node(package="controller_manager", executable="spawner", arguments=["base", "leg", MANAGER])
+"""
+
+
+@pytest.mark.parametrize(
+    ("manager", "names"),
+    [
+        ('"--inactive"', (("one_arm",), ("two_arm",), ("base", "leg"))),
+        ('"-c", "/two/controller_manager"', (("one_arm",), ("two_arm", "base", "leg"), None)),
+        ('"-c", [UNKNOWN, "/controller_manager"]', (("one_arm",), ("two_arm",), ("base", "leg"))),
+    ],
+)
+def test_each_robot_has_the_controllers_of_its_namespace(
+    bot: Path, manager: str, names: tuple[tuple[str, ...] | None, ...]
+) -> None:
+    (bot / "config").mkdir()
+    for name in ("one", "two"):
+        (bot / f"config/{name}.yaml").write_text("{}")
+    path = written(bot, "a.launch.py", CONTROLLED.replace("MANAGER", manager))
+    uses = [each.use for each in read_launch(path, {}).models]
+    for use, expected in zip(uses, names, strict=True):
+        assert expected is None or use.spawned == expected
+    assert [each.name for each in uses[0].controllers] == ["one.yaml"]
+    assert [each.name for each in uses[1].controllers] == ["two.yaml"]
+    # A robot without controllers in its namespace has all that a file may define for it.
+    assert [each.name for each in uses[2].controllers] == ["one.yaml", "two.yaml"]
+
+
+def test_in_xml_each_robot_has_the_controllers_of_its_namespace(bot: Path) -> None:
+    (bot / "config").mkdir()
+    group = """<group ns="{0}">
+    <param name="robot_description" textfile="$(find bot)/urdf/bot.xacro"/>
+    <rosparam file="$(find bot)/config/{0}.yaml"/>
+    <node pkg="gazebo_ros" type="spawn_model" name="s" args="-param robot_description -model {0}"/>
+    <node pkg="controller_manager" type="spawner" name="c" args="{0}_arm"/></group>"""
+    for name in ("one", "two"):
+        (bot / f"config/{name}.yaml").write_text("a: {type: b}")
+    text = f"<launch>{group.format('one')}{group.format('two')}</launch>"
+    uses = [each.use for each in read_launch(written(bot, "a.launch", text), {}).models]
+    assert [each.spawned for each in uses] == [("one_arm",), ("two_arm",)]
+    assert [[file.name for file in each.controllers] for each in uses] == [
+        ["one.yaml"],
+        ["two.yaml"],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("topic", "remappings", "space", "ros"),
+    [
+        ("/model/a/odometry", '[("/model/a/odometry", "odom")]', "one", "/one/odom"),
+        ("/model/a/odometry", '[("/model/a/odometry", "/odom")]', "one", "/odom"),
+        ("odometry", "[]", "one", "/one/odometry"),
+        ("/model/a/odometry", "[]", "one", None),
+        ("/model/a/odometry", '[("/model/a/odometry", UNKNOWN)]', "one", None),
+    ],
+)
+def test_the_arguments_of_a_bridge_rename_topics(
+    bot: Path, topic: str, remappings: str, space: str, ros: str | None
+) -> None:
+    text = f"""
+xacro.process_file("{bot}/urdf/bot.xacro")
+bridge = Node(package="ros_gz_bridge", executable="parameter_bridge", remappings={remappings},
+     arguments=["{topic}@nav_msgs/msg/Odometry[gz.msgs.Odometry", "--ros-args"])
+GroupAction([PushRosNamespace("{space}"), bridge])
+"""
+    renamed = read_launch(written(bot, "a.launch.py", text), {}).renamed
+    assert [(each.gz, each.ros) for each in renamed] == ([] if ros is None else [(topic, ros)])
 
 
 @pytest.mark.parametrize(

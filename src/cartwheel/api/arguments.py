@@ -12,6 +12,7 @@ from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.files import ARGUMENT_UNKNOWN, INCLUDE_ABSENT
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Code, DescriptionError, Diagnostic
+from cartwheel.graph.renaming import Bridged
 
 T = TypeVar("T", bound=str | Path)
 
@@ -39,6 +40,21 @@ def paths(values: str | Path | Sequence[str | Path], name: str) -> list[Path]:
         CartwheelError: It contains something else.
     """
     return [Path(value) for value in several(values, name)]
+
+
+def bridges(values: str | Path | Sequence[str | Path | Bridged]) -> list[Path | Bridged]:
+    """The configuration files of ros_gz_bridge, and the entries that a launch file states.
+
+    Raises:
+        CartwheelError: It contains something else.
+    """
+    if isinstance(values, list | tuple):
+        stated = [each for each in values if isinstance(each, Bridged)]
+        return [
+            *paths([each for each in values if not isinstance(each, Bridged)], "bridge"),
+            *stated,
+        ]
+    return [*paths(values, "bridge")]  # type: ignore[arg-type]
 
 
 def text(value: object, name: str) -> str:

@@ -53,8 +53,8 @@ def launch(
         package_path=folders,
     )
     refuse_unknown_arguments(launched.diagnostics)
-    bridge = [*paths(options.pop("bridge", ()), "bridge"), *launched.bridges]
-    made = World(launched.world, package_path=folders, bridge=bridge, **options)
+    options["bridge"] = [*paths(options.get("bridge", ()), "bridge"), *launched.bridges]
+    made = World(launched.world, package_path=folders, **options)
     try:
         with made._used(change=True):
             spawn_all(made.session, launched, folders)

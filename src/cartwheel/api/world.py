@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Never, Self, SupportsFloat
 
 from cartwheel import description as descriptions
 from cartwheel.api.arguments import (
+    bridges,
     check_xacro_arguments,
     paths,
     refused,
@@ -167,7 +168,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 seed=seed,
                 strict=strict,
                 lenient=lenient,
-                bridge=paths(bridge, "bridge"),
+                bridge=bridges(bridge),
                 allow_path=paths(allow_path, "allow_path"),
                 plugins=paths(plugins, "plugins"),
                 package_path=paths(package_path, "package_path"),

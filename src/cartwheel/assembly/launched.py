@@ -13,10 +13,14 @@ from cartwheel.control.place import placed
 from cartwheel.description import load_robot, load_world
 from cartwheel.description.files.named_files import bundled_worlds
 from cartwheel.description.launches import LaunchedModel, LaunchStart, LaunchUse, read_launch
+from cartwheel.description.launches.use import RenamedTopic
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.ros_control.selection import published_by
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
+from cartwheel.graph.renaming import Bridged
+from cartwheel.messages import type_name
 from cartwheel.options import WORLD
 
 if TYPE_CHECKING:
@@ -47,8 +51,8 @@ class Launched:
     world: WorldDescription
     models: tuple[Start, ...] = ()
     """The models to spawn in it."""
-    bridges: tuple[Path, ...] = ()
-    """Configuration files of ros_gz_bridge."""
+    bridges: tuple[Path | Bridged, ...] = ()
+    """Configuration files of ros_gz_bridge, and topics in its arguments."""
     file: Path | None = None
     """The launch file, if there is one."""
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -105,10 +109,15 @@ def open_launch(
     return Launched(
         world=opened,
         models=tuple(models),
-        bridges=start.bridges,
+        bridges=(*start.bridges, *map(_bridged, start.renamed)),
         file=file,
         diagnostics=tuple(found),
     )
+
+
+def _bridged(topic: RenamedTopic) -> Bridged:
+    origin = Origin(file=str(topic.file))
+    return Bridged(gz=gz_topic(topic.gz), ros=topic.ros, type=type_name(topic.type), origin=origin)
 
 
 def _out_of_world(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import contextlib
+import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -36,6 +38,10 @@ from cartwheel.description.launches.python_values import (
 from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import BRIDGES, SUFFIXES, Facts
 
+_STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
+"""Actions that start nodes or read files."""
+_DEEPEST_CALL = 8
+"""Maximum nesting of calls of functions that the file defines."""
 _MOST_TURNS = 500
 """Maximum number of times that the bodies of all loops of a file are evaluated."""
 
@@ -56,12 +62,73 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
         Facts(find=facts.find, read=_ignore, home=facts.home, effort=facts.effort),
         depth,
     )
-    defaults.block(tree.body)
-    _Reader(path, defaults.defaults, arguments, facts, depth).block(tree.body)
+    defaults.file(tree)
+    _Reader(path, defaults.defaults, arguments, facts, depth).file(tree)
+
+
+def _used(value: Any) -> Any:
+    """The value of a variable or of a list's element that is used; an action is started."""
+    return value.start() if isinstance(value, _Later) else value
+
+
+def _start_all(values: Any) -> None:
+    """Starts the actions in a list that an action contains."""
+    for each in values[:LONGEST] if isinstance(values, list) else ():
+        _used(each)
+
+
+def _name_of(function: ast.expr) -> str:
+    """The name of a function or method; empty for other expressions."""
+    if isinstance(function, ast.Attribute):
+        return function.attr
+    return function.id if isinstance(function, ast.Name) else ""
+
+
+def _called(tree: ast.Module) -> dict[str, ast.FunctionDef]:
+    """The functions of a file that the file calls with arguments, by name."""
+    names = set()
+    defined = {}
+    for each in ast.walk(tree):
+        if isinstance(each, ast.FunctionDef):
+            defined[each.name] = each
+        elif isinstance(each, ast.Call) and isinstance(each.func, ast.Name):
+            names.add(each.func.id)
+            if each.func.id == "OpaqueFunction" and any(
+                word.arg in ("args", "kwargs") for word in each.keywords
+            ):
+                names |= {
+                    word.value.id
+                    for word in each.keywords
+                    if word.arg == "function" and isinstance(word.value, ast.Name)
+                }
+    return {name: function for name, function in defined.items() if name in names}
 
 
 def _ignore(_path: Path, _arguments: Mapping[str, str], _facts: Facts, _depth: int) -> None:
     """Included files are irrelevant for the declared defaults."""
+
+
+class _Later:
+    """An action that is assigned to a variable, and starts where the variable is used.
+
+    Args:
+        make: Starts it.
+        space: The namespace in which it is assigned.
+    """
+
+    def __init__(self, make: Callable[[], Any], space: str) -> None:
+        self._make = make
+        self.space = space
+        self.skipped = False
+        """Whether only actions that are not executed contain it."""
+        self._is_started = False
+
+    def start(self) -> Any:
+        """Starts the action once."""
+        if not self._is_started:
+            self._is_started = True
+            self._make()
+        return NOTHING
 
 
 class _Reader:
@@ -79,26 +146,56 @@ class _Reader:
         self._depth = depth
         self._turns = _MOST_TURNS
         self._names: dict[str, Any] = {"__file__": str(path)}
+        self._functions: dict[str, ast.FunctionDef] = {}
+        """The functions of the file that the file itself calls."""
+        self._calls = 0
+        """The number of these functions that are being evaluated."""
+        self._result: Any = NOTHING
+        """The value that the last of them returns."""
+        self._started: list[_Later] = []
+        """The actions that are assigned to variables."""
 
-    def block(self, statements: Iterable[ast.stmt]) -> None:
+    def file(self, tree: ast.Module) -> None:
+        """Evaluates a launch file. Actions that it assigns, but does not use are started last."""
+        self._functions = _called(tree)
+        self.block(tree.body)
+        for each in self._started:
+            if not each.skipped:
+                with self._within(each.space):
+                    each.start()
+
+    @contextlib.contextmanager
+    def _within(self, space: str) -> Iterator[None]:
+        before, self._facts.namespace = self._facts.namespace, space
+        yield
+        self._facts.namespace = before
+
+    def block(self, statements: Iterable[ast.stmt]) -> bool:
         """Evaluates statements in their order; of branches, all that may be executed.
 
         The body of a loop is evaluated for each value, or once if the values are unknown.
+
+        Returns:
+            Whether the function certainly returns in it.
         """
         for each in statements:
             self._facts.effort.spend()
+            if isinstance(each, ast.FunctionDef) and each.name in self._functions:
+                continue
             if isinstance(each, ast.Assign):
-                value = self.value(each.value)
+                value = self._assigned(each.value)
                 for target in each.targets:
                     self._assign(target, value)
             elif isinstance(each, ast.AnnAssign) and each.value is not None:
-                self._assign(each.target, self.value(each.value))
+                self._assign(each.target, self._assigned(each.value))
             elif isinstance(each, ast.AugAssign):
-                held, value = self.value(each.target), self.value(each.value)
+                held, value = self.value(each.target), self._assigned(each.value)
                 self._assign(each.target, combined(each.op, held, value))
-            elif isinstance(each, ast.Expr | ast.Return):
-                if each.value is not None:
-                    self.value(each.value)
+            elif isinstance(each, ast.Expr):
+                self.value(each.value)
+            elif isinstance(each, ast.Return):
+                self._result = NOTHING if each.value is None else self.value(each.value)
+                return True
             elif isinstance(each, ast.For):
                 for item in self._items(each.iter):
                     self._assign(each.target, item)
@@ -106,16 +203,42 @@ class _Reader:
                 self.block(each.orelse)
             elif isinstance(each, ast.If):
                 holds = self._holds(each.test)
-                self.block([] if holds is False else each.body)
-                self.block([] if holds is True else each.orelse)
+                body = self.block([] if holds is False else each.body)
+                other = self.block([] if holds is True else each.orelse)
+                if (body or holds is False) and (other or holds is True):
+                    return True
             elif isinstance(each, ast.With):
                 for item in each.items:
                     if item.optional_vars is not None:
                         self._assign(item.optional_vars, self.value(item.context_expr))
-                self.block(each.body)
+                if self.block(each.body):
+                    return True
             else:
                 for name in ("body", "orelse", "finalbody"):
                     self.block(getattr(each, name, ()) or ())
+        return False
+
+    def _assigned(self, node: ast.expr) -> Any:
+        """The value of an expression that is assigned: an action starts where it is used."""
+        if isinstance(node, ast.Call) and _name_of(node.func) in _STARTED:
+            return self._call(node, later=True)
+        if isinstance(node, ast.List | ast.Tuple):
+            return self._elements(node.elts, self._assigned)
+        if isinstance(node, ast.Name) and node.id in self._names:
+            return self._names[node.id]
+        return self.value(node)
+
+    @staticmethod
+    def _elements(nodes: list[ast.expr], value: Callable[[ast.expr], Any]) -> list[Any]:
+        """The values of a list's elements, of which some may be the elements of other lists."""
+        found: list[Any] = []
+        for each in nodes:
+            item = value(each.value if isinstance(each, ast.Starred) else each)
+            if isinstance(each, ast.Starred) and isinstance(item, list):
+                found += item[:LONGEST]
+            else:
+                found.append(item)
+        return found[:LONGEST]
 
     def _assign(self, target: ast.expr, value: Any) -> None:
         if isinstance(target, ast.Name):
@@ -134,8 +257,10 @@ class _Reader:
     def _items(self, node: ast.expr) -> Iterator[Any]:
         """The values of a loop's variable; a single unknown one if nothing is known about them."""
         kind, values = "", [node]
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-            kind, values = node.func.id, node.args
+        own = isinstance(node, ast.Call) and _name_of(node.func) in self._functions
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not own:
+            kind = node.func.id
+            values = [*node.args, *(each.value for each in node.keywords if each.arg == "start")]
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             kind, values = node.func.attr, [node.func.value]
         first, *more = items(kind, [self.value(each) for each in values]) or [NOTHING]
@@ -148,15 +273,20 @@ class _Reader:
 
     def _collected(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp) -> list[Any]:
         """The values of a comprehension."""
-        one = node.generators[0]
         found: list[Any] = []
-        for item in self._items(one.iter):
-            self._assign(one.target, item)
-            for other in node.generators[1:]:
-                self._assign(other.target, NOTHING)
-            if not any(self._holds(test) is False for test in one.ifs):
-                found.append(self.value(node.elt))
+        self._collect(node.generators, node.elt, found)
         return found
+
+    def _collect(self, loops: list[ast.comprehension], item: ast.expr, found: list[Any]) -> None:
+        """Adds the values of an expression for all values of the loops' variables."""
+        if not loops:
+            found.append(self.value(item))
+            return
+        first, *others = loops
+        for value in self._items(first.iter):
+            self._assign(first.target, value)
+            if not any(self._holds(test) is False for test in first.ifs):
+                self._collect(others, item, found)
 
     def value(self, node: ast.expr) -> Any:
         """The value of an expression; `NOTHING` if it is unknown."""
@@ -164,13 +294,13 @@ class _Reader:
         if isinstance(node, ast.Constant):
             return node.value
         if isinstance(node, ast.Name):
-            return self._names.get(node.id, NOTHING)
+            return _used(self._names.get(node.id, self._functions.get(node.id, NOTHING)))
         if isinstance(node, ast.JoinedStr):
             return concatenated(self.value(each) for each in node.values)
         if isinstance(node, ast.FormattedValue):
             return self.value(node.value)
         if isinstance(node, ast.List | ast.Tuple | ast.Set):
-            return [self.value(each) for each in node.elts]
+            return self._elements(node.elts, self.value)
         if isinstance(node, ast.Dict):
             return {
                 text(self.value(key)): self.value(value)
@@ -189,7 +319,7 @@ class _Reader:
         if isinstance(node, ast.Subscript):
             held, key = self.value(node.value), self.value(node.slice)
             if isinstance(held, list) and isinstance(key, int) and 0 <= key < len(held):
-                return held[key]
+                return _used(held[key])
             known = isinstance(held, dict) and isinstance(key, str | int)
             return held.get(key, NOTHING) if known else NOTHING
         if isinstance(node, ast.ListComp | ast.GeneratorExp | ast.SetComp):
@@ -208,7 +338,8 @@ class _Reader:
         value = self.value(test)
         return value != "" if is_known(value) else None
 
-    def _call(self, node: ast.Call) -> Any:
+    def _call(self, node: ast.Call, *, later: bool = False) -> Any:
+        """The value of a call; the action that it makes is started, or `later` is returned."""
         named = isinstance(node.func, ast.Name | ast.Attribute)
         name = node.func.id if isinstance(node.func, ast.Name) else ""
         holder: Any = NOTHING
@@ -217,18 +348,29 @@ class _Reader:
             holder = self.value(node.func.value)
         conditions = [each.value for each in node.keywords if each.arg == "condition"]
         if any(self.value(each) is False for each in conditions):
+            self._skip(node)
             return NOTHING  # the action is not executed, nor are those in it
         space = self._facts.namespace
+        is_kept = name in ("append", "extend") and isinstance(holder, list)
         places = [
-            self.value(each.value if isinstance(each, ast.Starred) else each) for each in node.args
+            (self._assigned if is_kept else self.value)(
+                each.value if isinstance(each, ast.Starred) else each
+            )
+            for each in node.args
         ]
         words = {
             each.arg: self.value(each.value)
             for each in node.keywords
-            if each.arg and each.arg != "condition"
+            if each.arg and each.arg not in ("condition", "target_action")
         }
         if not named:
             return NOTHING
+        function = self._functions.get(name)
+        if function is not None and isinstance(node.func, ast.Name):
+            return self._called(function, places, words)
+        if name not in SAME and not is_kept:
+            for value in (*places, *words.values()):
+                _start_all(value)
         if name == "GroupAction":
             self._facts.namespace = space
             return NOTHING
@@ -238,7 +380,7 @@ class _Reader:
         if name in JOINS:
             parts = [*([] if isinstance(holder, Unknown) else [holder]), *places]
             return path_of(parts)
-        if name in ("append", "extend") and isinstance(holder, list):
+        if is_kept:
             more = [first] if name == "append" else first
             if isinstance(more, list) and len(holder) + len(more) <= LONGEST:
                 holder += more
@@ -263,7 +405,60 @@ class _Reader:
         if name == "parse":
             return first if is_module(node.func, "xacro") else NOTHING
         maker = _ACTIONS.get(name)
-        return NOTHING if maker is None else maker(self, first, places, words)
+        if maker is None:
+            return NOTHING
+        if later:
+            made = functools.partial(maker, self, first, places, words)
+            self._started.append(_Later(made, self._facts.namespace))
+            return self._started[-1]
+        return maker(self, first, places, words)
+
+    def _skip(self, node: ast.Call) -> None:
+        """Notes that an action that is not executed does not start those that it contains."""
+        for each in ast.walk(node):
+            self._facts.effort.spend()
+            found = self._names.get(each.id) if isinstance(each, ast.Name) else None
+            if isinstance(found, _Later):
+                found.skipped = True
+
+    def _called(self, function: ast.FunctionDef, places: list[Any], words: dict[str, Any]) -> Any:
+        """The value that a function of the file returns for these arguments."""
+        if self._calls >= _DEEPEST_CALL:
+            return NOTHING
+        self._facts.effort.spend(len(self._names))
+        outside = self._names
+        stated = function.args
+        plain = [each.arg for each in (*stated.posonlyargs, *stated.args)]
+        given = dict.fromkeys((*plain, *(each.arg for each in stated.kwonlyargs)), NOTHING)
+        for names, values in (
+            (plain[len(plain) - len(stated.defaults) :], stated.defaults),
+            ([each.arg for each in stated.kwonlyargs], stated.kw_defaults),
+        ):
+            for name, value in zip(names, values, strict=True):
+                given[name] = NOTHING if value is None else self.value(value)
+        given |= dict(zip(plain, places, strict=False))
+        given |= {name: value for name, value in words.items() if name in given}
+        self._names = {**outside, **given}
+        self._calls += 1
+        self._result = NOTHING
+        self.block(function.body)
+        self._calls -= 1
+        self._names = outside
+        result, self._result = self._result, NOTHING
+        return result
+
+    def opaque(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Calls a function of the file with the arguments that it is given."""
+        function = words.get("function", first)
+        if isinstance(function, ast.FunctionDef):
+            given = words.get("args", [])
+            more = words.get("kwargs", {})
+            self._called(
+                function,
+                [NOTHING, *(given if isinstance(given, list) else [])],
+                more if isinstance(more, dict) else {},
+            )
+        return NOTHING
 
     def _processed(self, file: str, mappings: Any) -> Description:
         arguments = (
@@ -346,8 +541,18 @@ class _Reader:
         executable = text(words.get("executable", words.get("node_executable", "")))
         space = resolved(self._facts.namespace, joined(words.get("namespace", "")))
         described = [each for each in arguments if isinstance(each, Description)]
+        pairs = words.get("remappings")
         self._facts.node(
-            package, executable, texts, space, described[0].number if described else None
+            package,
+            executable,
+            texts,
+            space,
+            described=described[0].number if described else None,
+            remappings={
+                joined(each[0]): joined(each[1])
+                for each in (pairs if isinstance(pairs, list) else [])
+                if isinstance(each, list) and len(each) == 2
+            },
         )
         parameters = words.get("parameters")
         for each in parameters if isinstance(parameters, list) else []:
@@ -390,6 +595,7 @@ _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]]
     "IncludeLaunchDescription": _Reader.inclusion,
     "LaunchConfiguration": _Reader.configuration,
     "Node": _Reader.node,
+    "OpaqueFunction": _Reader.opaque,
     "PushRosNamespace": _Reader.push,
     "PushROSNamespace": _Reader.push,
     "PythonExpression": _Reader.expression,

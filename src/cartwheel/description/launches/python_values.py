@@ -135,10 +135,11 @@ def items(kind: str, values: list[Any]) -> list[Any] | None:
         return pairs if kind == "items" else None
     if kind == "range" and all(type(each) is int and abs(each) <= LONGEST for each in values):
         return list(range(*values)) if 1 <= len(values) <= 2 else None
+    if kind == "enumerate" and isinstance(first, list):
+        begin = values[1] if len(values) > 1 and type(values[1]) is int else 0
+        return [[index, each] for index, each in enumerate(first, begin)]
     if not values or not all(isinstance(each, list) for each in values):
         return None
-    if kind == "enumerate":
-        return [[index, each] for index, each in enumerate(first)]
     if kind == "zip":
         return [list(each) for each in zip(*values, strict=False)]
     if kind == "reversed":

@@ -67,7 +67,7 @@ def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterato
 def facts_of(path: Path, packages: Packages, arguments: Mapping[str, str], effort: Effort) -> Facts:
     """The contents of a launch file that is started with these arguments."""
     home = package_above(path.parent)
-    facts = Facts(find=packages.found, read=_read, home=home, effort=effort)
+    facts = Facts(find=packages.found, read=_read, home=home, effort=effort, file=path)
     _read(path, arguments, facts, 0)
     return facts
 
@@ -108,8 +108,8 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 description=description,
                 arguments=known,
                 unknown=len(arguments) - len(known),
-                controllers=tuple(dict.fromkeys(facts.yamls)),
-                spawned=tuple(dict.fromkeys(facts.spawned)),
+                controllers=tuple(dict.fromkeys(path for _, path in facts.yamls)),
+                spawned=tuple(dict.fromkeys(name for _, name in facts.spawned)),
                 simulated=facts.simulated,
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,

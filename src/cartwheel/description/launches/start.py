@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ast
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 from cartwheel.codes import files as codes
 from cartwheel.description.elements import xml
@@ -16,11 +17,12 @@ from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.search import facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
-from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse
+from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse, RenamedTopic
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.options import PACKAGE_PATH, WORLD
 from cartwheel.similar_names import meant, suggestion
 
+T = TypeVar("T")
 _WHY = "because launch files are read, but not executed"
 _SHOWN = 4
 """Maximum number of missing files and packages in a hint."""
@@ -53,6 +55,8 @@ class LaunchStart:
     """The world as the launch file states it; empty if it states none or an unknown one."""
     bridges: tuple[Path, ...]
     """Configuration files of ros_gz_bridge."""
+    renamed: tuple[RenamedTopic, ...]
+    """Topics that the arguments and remappings of ros_gz_bridge rename."""
     diagnostics: tuple[Diagnostic, ...]
     """Arguments without an effect, and what only the execution of the launch file determines."""
 
@@ -102,6 +106,7 @@ def read_launch(
         for spawn, use in found
         if use is not None and use.description is not None
     )
+    models = _with_own_controllers(models, facts)
     if not models:
         required = sorted(facts.declared - {*facts.defaults, *arguments})
         named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
@@ -120,6 +125,7 @@ def read_launch(
         models=models,
         world="" if UNKNOWN in world else world,
         bridges=tuple(facts.bridges),
+        renamed=tuple(facts.renamed),
         diagnostics=(
             *_unused(file, arguments, facts),
             *_unknown(file, world, models, facts),
@@ -201,6 +207,49 @@ def _described(facts: Facts, uses: Sequence[LaunchUse]) -> Iterator[tuple[Spawn,
         if number is None and spawn.file is None and others:
             number = facts.published.get(spawn.source, others[0])
         yield spawn, None if number is None or number == ABSENT else uses[number]
+
+
+def _with_own_controllers(
+    models: tuple[LaunchedModel, ...], facts: Facts
+) -> tuple[LaunchedModel, ...]:
+    """Several models, each with the controllers in its namespace, if there are any there.
+
+    The namespace of a model is that of its spawner or of its description's topic, its name, or an
+    argument of its description.
+    """
+    if len(models) < 2:
+        return models
+    spaces = [
+        {
+            each.spawn.namespace,
+            each.spawn.source.rpartition("/")[0],
+            each.spawn.name,
+            *(value.strip("/") for value in each.use.arguments.values()),
+        }
+        - {""}
+        for each in models
+    ]
+    every = [*itertools.chain(*spaces)]
+    return tuple(
+        replace(
+            each,
+            use=replace(
+                each.use,
+                controllers=tuple(_own(mine, every, facts.yamls)),
+                spawned=tuple(_own(mine, every, facts.spawned)),
+            ),
+        )
+        for each, mine in zip(models, spaces, strict=True)
+    )
+
+
+def _own(mine: Collection[str], every: Sequence[str], given: Sequence[tuple[str, T]]) -> list[T]:
+    """What is in a model's namespaces; otherwise, what is in those of no or of several models."""
+    own = dict.fromkeys(
+        value for space, value in given if space in mine and every.count(space) == 1
+    )
+    others = dict.fromkeys(value for space, value in given if every.count(space) != 1)
+    return list(own or others or dict.fromkeys(value for _, value in given))
 
 
 def _unused(file: Path, arguments: Mapping[str, str], facts: Facts) -> list[Diagnostic]:

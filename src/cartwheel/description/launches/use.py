@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import shlex
@@ -40,11 +41,16 @@ SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
 _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 BRIDGES = frozenset({"ros_gz_bridge", "ros_ign_bridge"})
 """Packages that bridge topics of gz-sim."""
+_BRIDGED = re.compile(r"(?P<topic>[^@\[\]\s]+)@(?P<type>\w+(?:/msg)?/\w+)[@\[\]][\w.]+")
+"""A topic in the arguments of a bridge, with its types in ROS and in gz-sim."""
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
 """Options of ``ros2 control load_controller`` with a value."""
+_MANAGERS = frozenset({"-c", "--controller-manager"})
+_MANAGER_SPACES = frozenset({"-n", "--namespace"})
+"""Options of spawners that state the controller manager, or its namespace."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
 
@@ -97,12 +103,39 @@ class LaunchUse:
     """The world that it starts, as it is stated; empty if there is none."""
 
 
+def _managed(words: list[str], space: str) -> str:
+    """The namespace of a controller manager; empty if it is unknown, as for that of any robot.
+
+    Args:
+        words: Arguments of a spawner, which may state the manager.
+        space: The namespace of the spawner.
+    """
+    for flag, word in itertools.pairwise(words):
+        if flag in _MANAGERS:
+            space = resolved(space, word).rpartition("/")[0]
+        elif flag in _MANAGER_SPACES:
+            space = resolved(space, word)
+    return "" if UNKNOWN in space else space
+
+
 def _is_single(file: Path) -> bool:
     """Whether a YAML file contains the parameters of a single controller."""
     try:
         return re.search(r"^type\s*:", yaml_text.read(file), re.MULTILINE) is not None
     except (CartwheelError, OSError, UnicodeDecodeError):
         return False
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RenamedTopic:
+    """A topic of gz-sim that a bridge has under another name in ROS."""
+
+    gz: str
+    ros: str
+    type: str
+    """Message type in ROS, such as ``geometry_msgs/msg/Twist``."""
+    file: Path
+    """The launch file."""
 
 
 @dataclass(kw_only=True)
@@ -118,6 +151,8 @@ class Facts:
     """Reads an included launch file with arguments, at a depth."""
     effort: Effort
     """The remaining effort."""
+    file: Path = Path()
+    """The launch file that is read."""
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
     absent: dict[str, None] = field(default_factory=dict)
     """Files and packages that are stated, but were not found, in their order."""
@@ -126,14 +161,18 @@ class Facts:
     not found."""
     namespace: str = ""
     """The namespace of the group that is being read."""
-    yamls: list[Path] = field(default_factory=list)
-    spawned: list[str] = field(default_factory=list)
+    yamls: list[tuple[str, Path]] = field(default_factory=list)
+    """Files with parameters of controllers, with the namespaces into which they are loaded."""
+    spawned: list[tuple[str, str]] = field(default_factory=list)
+    """Controllers that are started, with the namespaces of their managers."""
     simulated: bool = False
     spawns: list[Spawn] = field(default_factory=list)
     world: str = ""
     """The world as it is stated; empty if none is."""
     bridges: list[Path] = field(default_factory=list)
     """Configuration files of ros_gz_bridge."""
+    renamed: list[RenamedTopic] = field(default_factory=list)
+    """Topics that the arguments and remappings of ros_gz_bridge rename."""
     lost_bridges: list[str] = field(default_factory=list)
     """Those that were not found."""
     declared: set[str] = field(default_factory=set)
@@ -259,9 +298,11 @@ class Facts:
         executable: str,
         words: list[str],
         space: str,
+        *,
         described: int | None = None,
+        remappings: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
-        """Adds what a node starts: models or controllers.
+        """Adds what a node starts: models, controllers or a bridge.
 
         Args:
             package: Its package.
@@ -269,6 +310,7 @@ class Facts:
             words: Its arguments.
             space: Its namespace.
             described: The number of the description whose text is one of its arguments.
+            remappings: New names of its topics, by their old names.
         """
         if package in _GAZEBO:
             self.simulated |= executable in _SPAWNERS
@@ -283,8 +325,27 @@ class Facts:
             for word in words:
                 if word.startswith("config_file:="):
                     self.bridge(word.removeprefix("config_file:="))
+            self._rename(words, space, remappings)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
-            self._spawn(words)
+            self._spawn(words, space)
+
+    def _rename(self, words: list[str], space: str, remappings: Mapping[str, str]) -> None:
+        """Adds the topics in a bridge's arguments, such as ``/a@pkg/msg/T@gz.msgs.T``."""
+        self.effort.spend(len(words) + len(remappings))
+        names = {resolved(space, old): resolved(space, new) for old, new in remappings.items()}
+        for word in words:
+            found = _BRIDGED.fullmatch(word)
+            if found is None:
+                continue
+            old = resolved(space, found["topic"])
+            new = names.get(old, old)
+            plain = resolved("", found["topic"])
+            if UNKNOWN not in word and new != plain and re.fullmatch(r"[\w/]+", new, re.ASCII):
+                self.renamed.append(
+                    RenamedTopic(
+                        gz=found["topic"], ros=f"/{new}", type=found["type"], file=self.file
+                    )
+                )
 
     def bridge(self, text: str) -> None:
         """Adds a configuration file of ros_gz_bridge if it exists."""
@@ -321,11 +382,13 @@ class Facts:
                 next(options, None)
             elif not word.startswith("-"):
                 positional.append(word)
-        self._spawn(positional[:1])
+        space = _managed(words, "")
+        self._spawn(positional[:1], space)
         for each in positional[1:2]:
-            self.parameters(each)
+            self.parameters(each, within=space)
 
-    def _spawn(self, words: list[str]) -> None:
+    def _spawn(self, words: list[str], space: str) -> None:
+        space = _managed(words, space)
         skip = False
         for index, word in enumerate(words):
             if skip:
@@ -334,25 +397,27 @@ class Facts:
                 # Options with a value, such as --controller-manager /controller_manager.
                 skip = word not in ("--inactive", "--stopped", "--load-only", "--activate-as-group")
                 if word in ("-p", "--param-file") and index + 1 < len(words):
-                    self.parameters(words[index + 1])
+                    self.parameters(words[index + 1], within=space)
             elif word not in ("spawn", "load", "start") and re.fullmatch(r"[\w/]+", word):
-                self.spawned.append(word.rsplit("/", 1)[-1])
+                self.spawned.append((space, word.rsplit("/", 1)[-1]))
 
-    def parameters(self, text: str, namespace: str = "") -> None:
+    def parameters(self, text: str, namespace: str = "", *, within: str | None = None) -> None:
         """Adds a YAML file if it exists.
 
         Args:
             text: Its name.
             namespace: Namespace into which ROS 1 loads it. It is the name of the controller if the
                 file contains the parameters of a single one.
+            within: Namespace of the node that loads it; None for that of the group.
         """
         self.effort.spend(_LOOK)
         path = Path(text.strip())
         if UNKNOWN not in text and path.suffix in (".yaml", ".yml") and is_file(path):
+            space = resolved(self.namespace if within is None else within, namespace.strip())
             name = namespace.strip("/ ").rpartition("/")[2]
             if re.fullmatch(r"\w+", name) and _is_single(path):
-                path = Path(f"{name}={path}")
-            self.yamls.append(path)
+                path, space = Path(f"{name}={path}"), space.rpartition("/")[0]
+            self.yamls.append((space, path))
 
     def include(
         self,

@@ -85,6 +85,11 @@ class _Reader:
                 self._value(node, kind),
                 split(self._value(node, "args")),
                 self._space(node),
+                remappings={
+                    self._value(child, "from"): self._value(child, "to")
+                    for child in node.children
+                    if child.tag == "remap" and self._holds(child)
+                },
             )
             with self._within(node):
                 self.group(node)
