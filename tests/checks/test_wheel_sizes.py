@@ -192,6 +192,18 @@ def test_a_wrong_size_of_a_car_that_faces_along_y_is_corrected(reported, take, n
     assert reported(take(wrong, finding)) == []
 
 
+@pytest.mark.parametrize("stated", [True, False])
+def test_mecanum_wheels_whose_axes_all_point_to_the_right_roll_backwards(bench, stated):
+    """The joints of a plugin without tags have the names of the tags."""
+    tags = {key: value for key, value in MECANUM.items() if stated or not key.endswith("joint")}
+    text = car(plugin("gz-sim-mecanum-drive-system", **tags))
+    text = text if stated else text.replace("rear_left_joint", "back_left_joint")
+    text = text if stated else text.replace("rear_right_joint", "back_right_joint")
+    assert not bench.find(text, "wheel-axis-misaligned")
+    found = bench.find(text.replace('xyz="0 1 0"', 'xyz="0 -1 0"'), "wheel-axis-misaligned")
+    assert [each.values["attribute"] for each in found] == ["backwards"] * 4
+
+
 def test_the_axes_define_the_sides_of_a_car_that_faces_along_y(bench):
     drive = plugin("libgazebo_ros_diff_drive.so", **PAIRS)
     swapped = turned(car(drive.replace("rear_left", "x").replace("rear_right", "rear_left")

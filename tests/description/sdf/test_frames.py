@@ -61,6 +61,37 @@ def test_the_older_frame_attribute_means_the_same_and_may_be_empty():
     close(found.link("b").pose, (2, 0, 0))
 
 
+@pytest.mark.parametrize(
+    ("version", "name"), [("1.5", "frame"), ("1.6", "frame"), ("1.7", "relative_to")]
+)
+def test_the_older_frame_attribute_is_read_in_all_elements(version, name):
+    """sdformat converts it to relative_to."""
+    text = f"""<sdf version="{version}"><world name="w">
+        <model name="m"><pose {name}="world">1 0 0 0 0 0</pose>
+          <link name="a"><pose>0 1 0 0 0 0</pose></link>
+          <link name="b"><pose {name}="a">0 1 0 0 0 0</pose>
+            <inertial><pose {name}="a">0 0 1 0 0 0</pose><mass>1</mass></inertial>
+            <collision name="c"><pose {name}="a">0 0 1 0 0 0</pose><geometry><box/></geometry>
+            </collision>
+            <visual name="v"><pose {name}="j">0 0 1 0 0 0</pose><geometry><box/></geometry>
+            </visual></link>
+          <joint name="j" type="fixed"><pose {name}="a">0 0 2 0 0 0</pose><parent>a</parent>
+            <child>b</child></joint></model>
+        <model name="n"><pose {name}="m">0 0 3 0 0 0</pose><link name="x"/></model>
+        <light name="l" type="point"><pose {name}="n">0 0 1 0 0 0</pose></light></world></sdf>"""
+    world = read_sdf(parse(text, "w.sdf"), Packages(environment={}))
+    m, n = world.models
+    b = m.link("b")
+    close(m.pose, (1, 0, 0))
+    close(n.pose, (1, 0, 3))
+    close(world.lights[0].pose, (1, 0, 4))
+    close(b.pose, (0, 2, 0))
+    for each in (b.inertial, *b.collisions):
+        close(each.pose, (0, -1, 1))
+    close(b.visuals[0].pose, (0, -1, 3))
+    close(m.joint("j").pose, (0, -1, 2))
+
+
 def test_frames_joints_and_model_as_references():
     found = robot(
         f"""<link name="base"><pose>0 0 1 0 0 0</pose></link>

@@ -26,8 +26,9 @@ from cartwheel.description.model import Joint, PluginTag
 from cartwheel.description.rolling import rolling
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.catalogue import plugin_named
-from cartwheel.dialects.gz.mecanum import GzMecanumDrive
-from cartwheel.errors import Diagnostic
+from cartwheel.dialects.gz.mecanum import GzMecanumDrive, MecanumParameters
+from cartwheel.dialects.tags import read
+from cartwheel.errors import Diagnostic, PluginError
 from cartwheel.geometry import matrix_from_quat
 
 _DOWN = -0.5
@@ -80,14 +81,14 @@ def _mecanum(subject: Subject) -> Iterator[Diagnostic]:
         for tag in robot.description.plugins:
             if plugin_named(tag.filename) is not GzMecanumDrive or not robot.is_placed:
                 continue
-            sides = [
-                [
-                    each.text.strip()
-                    for end in ("front", "back")
-                    for each in tag.element.find_all(f"{end}_{side}_joint")
-                ]
-                for side in ("left", "right")
-            ]
+            try:
+                config, _ = read(MecanumParameters, tag.element)
+            except PluginError:
+                continue
+            sides = (
+                (*config.front_left, *config.back_left),
+                (*config.front_right, *config.back_right),
+            )
             if not rolling(robot.description, *sides).backward:
                 continue
             for name in (*sides[0], *sides[1]):
