@@ -6,7 +6,7 @@ import contextlib
 import functools
 import weakref
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -16,7 +16,7 @@ from cartwheel.description.files.package_files import SimulationPackages
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.launches import LaunchUse
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.dialects.gz.bridge_file import read_bridge
+from cartwheel.dialects.gz.bridge_file import Bridge, entries_of
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
 from cartwheel.dialects.ros_control.files import ControllerFiles
@@ -25,13 +25,13 @@ from cartwheel.dialects.ros_control.selection import (
     selection,
     selection_near,
     with_published_control,
+    world_with_published_control,
 )
 from cartwheel.dialects.ros_control.suggestion import lacks_controllers, no_controllers, suggested
 from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Code, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, check_prefix
-from cartwheel.graph.renaming import Bridged
 from cartwheel.graph.topic import Subscription
 from cartwheel.messages import Form, zero
 from cartwheel.messages.library.library import TypeLibrary
@@ -100,7 +100,7 @@ class Session:
         seed: int = 0,
         strict: bool = False,
         lenient: bool = False,
-        bridge: Sequence[Path | Bridged] = (),
+        bridge: Sequence[Bridge] = (),
         plugins: Sequence[Path] = (),
         allow_path: Sequence[Path] = (),
         package_path: Sequence[Path] = (),
@@ -119,7 +119,7 @@ class Session:
         self.shared = Shared(self.graph)
         """Objects that all components of the simulation share."""
         for entry in bridge:
-            self.shared.renaming.add([entry] if isinstance(entry, Bridged) else read_bridge(entry))
+            self.shared.renaming.add(entries_of(entry))
         for path in plugins:
             self._packages.add(path)
         self._packages.add(world.origin.file)
@@ -133,11 +133,6 @@ class Session:
         """How each model was spawned, by its name."""
         self.originals: weakref.WeakKeyDictionary[object, Any] = weakref.WeakKeyDictionary()
         """For each saved state, the objects that were saved; see `cartwheel.saving`."""
-        models = tuple(
-            with_published_control(each, package_path=package_path) for each in world.models
-        )
-        if any(one is not other for one, other in zip(models, world.models, strict=True)):
-            world = replace(world, models=models)
         # Without a reference to the session, because the simulation would keep it alive.
         types, shared = self.types, self.shared
 
@@ -150,7 +145,7 @@ class Session:
                 return attach_world(part, shared)
 
         self.simulation = Simulation(
-            world,
+            world_with_published_control(world, package_path),
             attach=attach_model,
             attach_world=attach_to_world,
             seed=seed,

@@ -95,6 +95,7 @@ MAY_IMPORT = {
         "messages",
         "graph",
         "interfaces",
+        "dialects",
         "session",
         "gazebo",
         "bridges",

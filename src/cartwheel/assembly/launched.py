@@ -13,7 +13,7 @@ from cartwheel.control.place import placed
 from cartwheel.description import load_robot, load_world
 from cartwheel.description.files.named_files import bundled_worlds
 from cartwheel.description.launches import LaunchedModel, LaunchStart, LaunchUse, read_launch
-from cartwheel.description.launches.use import RenamedTopic
+from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.ros_control.selection import published_by

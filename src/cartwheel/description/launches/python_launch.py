@@ -1,4 +1,8 @@
-"""Reads launch files in Python (ROS 2) by their syntax tree. They are never executed."""
+"""Reads launch files in Python (ROS 2) by their syntax tree. They are never executed.
+
+The file is long because its functions evaluate expressions and the actions in them, which call each
+other.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +14,16 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.bridging import BRIDGES
 from cartwheel.description.launches.effort import LONGEST
 from cartwheel.description.launches.evaluation import evaluated
+from cartwheel.description.launches.python_actions import (
+    Later,
+    called_functions,
+    name_of,
+    start_all,
+    used,
+)
 from cartwheel.description.launches.python_conditions import CONDITIONS, holds
 from cartwheel.description.launches.python_functions import (
     FIRST,
@@ -36,7 +48,7 @@ from cartwheel.description.launches.python_values import (
     text,
 )
 from cartwheel.description.launches.spawning import resolved, split
-from cartwheel.description.launches.use import BRIDGES, SUFFIXES, Facts
+from cartwheel.description.launches.use import SUFFIXES, Facts
 
 _STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
 """Actions that start nodes or read files."""
@@ -66,69 +78,8 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
     _Reader(path, defaults.defaults, arguments, facts, depth).file(tree)
 
 
-def _used(value: Any) -> Any:
-    """The value of a variable or of a list's element that is used; an action is started."""
-    return value.start() if isinstance(value, _Later) else value
-
-
-def _start_all(values: Any) -> None:
-    """Starts the actions in a list that an action contains."""
-    for each in values[:LONGEST] if isinstance(values, list) else ():
-        _used(each)
-
-
-def _name_of(function: ast.expr) -> str:
-    """The name of a function or method; empty for other expressions."""
-    if isinstance(function, ast.Attribute):
-        return function.attr
-    return function.id if isinstance(function, ast.Name) else ""
-
-
-def _called(tree: ast.Module) -> dict[str, ast.FunctionDef]:
-    """The functions of a file that the file calls with arguments, by name."""
-    names = set()
-    defined = {}
-    for each in ast.walk(tree):
-        if isinstance(each, ast.FunctionDef):
-            defined[each.name] = each
-        elif isinstance(each, ast.Call) and isinstance(each.func, ast.Name):
-            names.add(each.func.id)
-            if each.func.id == "OpaqueFunction" and any(
-                word.arg in ("args", "kwargs") for word in each.keywords
-            ):
-                names |= {
-                    word.value.id
-                    for word in each.keywords
-                    if word.arg == "function" and isinstance(word.value, ast.Name)
-                }
-    return {name: function for name, function in defined.items() if name in names}
-
-
 def _ignore(_path: Path, _arguments: Mapping[str, str], _facts: Facts, _depth: int) -> None:
     """Included files are irrelevant for the declared defaults."""
-
-
-class _Later:
-    """An action that is assigned to a variable, and starts where the variable is used.
-
-    Args:
-        make: Starts it.
-        space: The namespace in which it is assigned.
-    """
-
-    def __init__(self, make: Callable[[], Any], space: str) -> None:
-        self._make = make
-        self.space = space
-        self.skipped = False
-        """Whether only actions that are not executed contain it."""
-        self._is_started = False
-
-    def start(self) -> Any:
-        """Starts the action once."""
-        if not self._is_started:
-            self._is_started = True
-            self._make()
-        return NOTHING
 
 
 class _Reader:
@@ -152,12 +103,12 @@ class _Reader:
         """The number of these functions that are being evaluated."""
         self._result: Any = NOTHING
         """The value that the last of them returns."""
-        self._started: list[_Later] = []
+        self._started: list[Later] = []
         """The actions that are assigned to variables."""
 
     def file(self, tree: ast.Module) -> None:
         """Evaluates a launch file. Actions that it assigns, but does not use are started last."""
-        self._functions = _called(tree)
+        self._functions = called_functions(tree)
         self.block(tree.body)
         for each in self._started:
             if not each.skipped:
@@ -220,7 +171,7 @@ class _Reader:
 
     def _assigned(self, node: ast.expr) -> Any:
         """The value of an expression that is assigned: an action starts where it is used."""
-        if isinstance(node, ast.Call) and _name_of(node.func) in _STARTED:
+        if isinstance(node, ast.Call) and name_of(node.func) in _STARTED:
             return self._call(node, later=True)
         if isinstance(node, ast.List | ast.Tuple):
             return self._elements(node.elts, self._assigned)
@@ -257,7 +208,7 @@ class _Reader:
     def _items(self, node: ast.expr) -> Iterator[Any]:
         """The values of a loop's variable; a single unknown one if nothing is known about them."""
         kind, values = "", [node]
-        own = isinstance(node, ast.Call) and _name_of(node.func) in self._functions
+        own = isinstance(node, ast.Call) and name_of(node.func) in self._functions
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not own:
             kind = node.func.id
             values = [*node.args, *(each.value for each in node.keywords if each.arg == "start")]
@@ -294,7 +245,7 @@ class _Reader:
         if isinstance(node, ast.Constant):
             return node.value
         if isinstance(node, ast.Name):
-            return _used(self._names.get(node.id, self._functions.get(node.id, NOTHING)))
+            return used(self._names.get(node.id, self._functions.get(node.id, NOTHING)))
         if isinstance(node, ast.JoinedStr):
             return concatenated(self.value(each) for each in node.values)
         if isinstance(node, ast.FormattedValue):
@@ -319,7 +270,7 @@ class _Reader:
         if isinstance(node, ast.Subscript):
             held, key = self.value(node.value), self.value(node.slice)
             if isinstance(held, list) and isinstance(key, int) and 0 <= key < len(held):
-                return _used(held[key])
+                return used(held[key])
             known = isinstance(held, dict) and isinstance(key, str | int)
             return held.get(key, NOTHING) if known else NOTHING
         if isinstance(node, ast.ListComp | ast.GeneratorExp | ast.SetComp):
@@ -370,7 +321,7 @@ class _Reader:
             return self._called(function, places, words)
         if name not in SAME and not is_kept:
             for value in (*places, *words.values()):
-                _start_all(value)
+                start_all(value)
         if name == "GroupAction":
             self._facts.namespace = space
             return NOTHING
@@ -409,7 +360,7 @@ class _Reader:
             return NOTHING
         if later:
             made = functools.partial(maker, self, first, places, words)
-            self._started.append(_Later(made, self._facts.namespace))
+            self._started.append(Later(made, self._facts.namespace))
             return self._started[-1]
         return maker(self, first, places, words)
 
@@ -418,7 +369,7 @@ class _Reader:
         for each in ast.walk(node):
             self._facts.effort.spend()
             found = self._names.get(each.id) if isinstance(each, ast.Name) else None
-            if isinstance(found, _Later):
+            if isinstance(found, Later):
                 found.skipped = True
 
     def _called(self, function: ast.FunctionDef, places: list[Any], words: dict[str, Any]) -> Any:

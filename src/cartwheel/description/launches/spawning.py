@@ -20,6 +20,9 @@ _NAMES = frozenset({"-model", "-entity", "-name"})
 _SPACES = frozenset({"-robot_namespace", "-namespace"})
 _IN_NAMESPACE = frozenset({"spawn_model", "spawn_entity.py"})
 """Those whose models have the namespace of their node, unless another one is stated."""
+_MANAGERS = frozenset({"-c", "--controller-manager"})
+_MANAGER_SPACES = frozenset({"-n", "--namespace"})
+"""Options of spawners that state the controller manager, or its namespace."""
 _FARTHEST = 1e6
 _WORLDS = (".world", ".sdf")
 
@@ -92,6 +95,21 @@ def resolved(space: str, name: str) -> str:
     if not name.startswith("/"):
         name = f"{space}/{name}"
     return limited("/".join(part for part in name.split("/") if part))
+
+
+def manager_space(words: list[str], space: str) -> str:
+    """The namespace of a controller manager; empty if it is unknown, as for that of any robot.
+
+    Args:
+        words: Arguments of a spawner, which may state the manager.
+        space: The namespace of the spawner.
+    """
+    for flag, word in itertools.pairwise(words):
+        if flag in _MANAGERS:
+            space = resolved(space, word).rpartition("/")[0]
+        elif flag in _MANAGER_SPACES:
+            space = resolved(space, word)
+    return "" if UNKNOWN in space else space
 
 
 def _number(word: str) -> float | None:

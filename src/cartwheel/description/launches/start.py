@@ -14,10 +14,11 @@ from cartwheel.description.elements import xml
 from cartwheel.description.files.package_folders import is_file
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.search import facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
-from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse, RenamedTopic
+from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.options import PACKAGE_PATH, WORLD
 from cartwheel.similar_names import meant, suggestion

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
 import shlex
@@ -17,10 +16,12 @@ from cartwheel.description.files.package_folders import (
     package_above,
     package_name,
 )
+from cartwheel.description.launches.bridging import BRIDGES, RenamedTopic, renamed_topics
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
     Spawn,
+    manager_space,
     resolved,
     spawn_of,
     split,
@@ -39,18 +40,11 @@ DEEPEST = 6
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
 """Ends of the names of descriptions."""
 _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
-BRIDGES = frozenset({"ros_gz_bridge", "ros_ign_bridge"})
-"""Packages that bridge topics of gz-sim."""
-_BRIDGED = re.compile(r"(?P<topic>[^@\[\]\s]+)@(?P<type>\w+(?:/msg)?/\w+)[@\[\]][\w.]+")
-"""A topic in the arguments of a bridge, with its types in ROS and in gz-sim."""
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
 """Options of ``ros2 control load_controller`` with a value."""
-_MANAGERS = frozenset({"-c", "--controller-manager"})
-_MANAGER_SPACES = frozenset({"-n", "--namespace"})
-"""Options of spawners that state the controller manager, or its namespace."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
 
@@ -103,39 +97,12 @@ class LaunchUse:
     """The world that it starts, as it is stated; empty if there is none."""
 
 
-def _managed(words: list[str], space: str) -> str:
-    """The namespace of a controller manager; empty if it is unknown, as for that of any robot.
-
-    Args:
-        words: Arguments of a spawner, which may state the manager.
-        space: The namespace of the spawner.
-    """
-    for flag, word in itertools.pairwise(words):
-        if flag in _MANAGERS:
-            space = resolved(space, word).rpartition("/")[0]
-        elif flag in _MANAGER_SPACES:
-            space = resolved(space, word)
-    return "" if UNKNOWN in space else space
-
-
 def _is_single(file: Path) -> bool:
     """Whether a YAML file contains the parameters of a single controller."""
     try:
         return re.search(r"^type\s*:", yaml_text.read(file), re.MULTILINE) is not None
     except (CartwheelError, OSError, UnicodeDecodeError):
         return False
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RenamedTopic:
-    """A topic of gz-sim that a bridge has under another name in ROS."""
-
-    gz: str
-    ros: str
-    type: str
-    """Message type in ROS, such as ``geometry_msgs/msg/Twist``."""
-    file: Path
-    """The launch file."""
 
 
 @dataclass(kw_only=True)
@@ -325,27 +292,10 @@ class Facts:
             for word in words:
                 if word.startswith("config_file:="):
                     self.bridge(word.removeprefix("config_file:="))
-            self._rename(words, space, remappings)
+            self.effort.spend(len(words) + len(remappings))
+            self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
             self._spawn(words, space)
-
-    def _rename(self, words: list[str], space: str, remappings: Mapping[str, str]) -> None:
-        """Adds the topics in a bridge's arguments, such as ``/a@pkg/msg/T@gz.msgs.T``."""
-        self.effort.spend(len(words) + len(remappings))
-        names = {resolved(space, old): resolved(space, new) for old, new in remappings.items()}
-        for word in words:
-            found = _BRIDGED.fullmatch(word)
-            if found is None:
-                continue
-            old = resolved(space, found["topic"])
-            new = names.get(old, old)
-            plain = resolved("", found["topic"])
-            if UNKNOWN not in word and new != plain and re.fullmatch(r"[\w/]+", new, re.ASCII):
-                self.renamed.append(
-                    RenamedTopic(
-                        gz=found["topic"], ros=f"/{new}", type=found["type"], file=self.file
-                    )
-                )
 
     def bridge(self, text: str) -> None:
         """Adds a configuration file of ros_gz_bridge if it exists."""
@@ -382,13 +332,13 @@ class Facts:
                 next(options, None)
             elif not word.startswith("-"):
                 positional.append(word)
-        space = _managed(words, "")
+        space = manager_space(words, "")
         self._spawn(positional[:1], space)
         for each in positional[1:2]:
             self.parameters(each, within=space)
 
     def _spawn(self, words: list[str], space: str) -> None:
-        space = _managed(words, space)
+        space = manager_space(words, space)
         skip = False
         for index, word in enumerate(words):
             if skip:

@@ -32,6 +32,15 @@ def namespaced(topic: str, namespace: str) -> str:
     return resolve_name(gz_spelling(topic), namespace)
 
 
+Bridge = Path | Bridged
+"""A configuration file, or one of its entries."""
+
+
+def entries_of(bridge: Bridge) -> list[Bridged]:
+    """Returns the entries of a file, see `read_bridge`, or a single one."""
+    return [bridge] if isinstance(bridge, Bridged) else read_bridge(bridge)
+
+
 def read_bridge(path: Path) -> list[Bridged]:
     """Reads the entries of a file for ``parameter_bridge``.
 

@@ -26,7 +26,7 @@ from cartwheel.description.launches import (
     root_of,
     starters,
 )
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.files import for_robot, name_and_file, read_parameters
 from cartwheel.dialects.ros_control.suggestion import (
     commanding,
@@ -238,6 +238,16 @@ def with_published_control(
             if found is not None:
                 return found
     return robot
+
+
+def world_with_published_control(
+    world: WorldDescription, package_path: Sequence[Path] = ()
+) -> WorldDescription:
+    """A world whose models have the hardware of their URDF; see `with_published_control`."""
+    models = tuple(with_published_control(each, None, package_path) for each in world.models)
+    if all(one is other for one, other in zip(models, world.models, strict=True)):
+        return world
+    return replace(world, models=models)
 
 
 def published_by(
