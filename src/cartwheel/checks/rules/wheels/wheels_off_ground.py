@@ -11,11 +11,16 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
+    CAMBER,
+    ROUND,
+    gz_wheels,
     lowest,
+    wheel_axis,
     wheel_joints,
     wheel_links,
     wheel_place,
     wheel_radius,
+    wheel_widths,
 )
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint, Link
@@ -55,7 +60,7 @@ def body_on_ground(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if robot.description.static or not robot.is_placed:
             continue
-        joints = wheel_joints(robot)
+        joints = wheel_joints(robot) or list(_commanded_wheels(robot))
         wheels = {name for joint in joints for name in wheel_links(robot, joint)}
         bases = {robot.rigid_root(joint.parent) for joint in joints}
         bottom = Surfaces(robot, wheels).lowest(_UP)
@@ -84,6 +89,22 @@ def body_on_ground(subject: Subject) -> Iterator[Diagnostic]:
                     hint="Raise the collision above the ground, or lower the wheels.",
                 )
                 break
+
+
+def _commanded_wheels(robot: Robot) -> Iterator[Joint]:
+    """The driven wheels of a robot whose drive states no sides, such as one with mecanum wheels."""
+    ground = lowest(robot, *robot.links)
+    for name in sorted(robot.driven | set(gz_wheels(robot))):
+        joint = robot.joints.get(name)
+        if joint is None or not joint.turns or joint.child not in robot.placed:
+            continue
+        widths = wheel_widths(robot, joint, robot.collisions)
+        bottom = lowest(robot, *wheel_links(robot, joint))
+        if widths is None or bottom is None or ground is None:
+            continue
+        level = abs(float(wheel_axis(robot, joint)[2])) < CAMBER
+        if level and widths.min() >= ROUND * widths.max() and bottom - ground <= _DEEP:
+            yield joint
 
 
 def _low_links(robot: Robot) -> Iterator[Diagnostic]:
