@@ -40,7 +40,12 @@ from cartwheel.codes.robot import (
     WHEELS_SWAPPED,
     WHEELS_TOED,
 )
-from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE, PLUGIN_LEFT_OUT
+from cartwheel.codes.running import (
+    CONTROLLER_NOT_STARTED,
+    JOINT_DRIVEN_TWICE,
+    JOINT_SHARED,
+    PLUGIN_LEFT_OUT,
+)
 from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import trial, try_robot
 from cartwheel.corpus.diagnosis import faults
@@ -844,8 +849,12 @@ def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_f
     assert fault.source == "unknown"
 
 
-def test_a_controller_that_a_launch_file_starts_must_start_if_the_robot_names_its_file(tmp_path):
-    joint = '<joint name="shoulder"><command_interface name="position"/></joint>'
+@pytest.mark.parametrize("interfaces", [("position",), ("position", "velocity")])
+def test_a_controller_that_a_launch_file_starts_must_start_if_the_robot_names_its_file(
+    tmp_path, interfaces
+):
+    offered = "".join(f'<command_interface name="{each}"/>' for each in interfaces)
+    joint = f'<joint name="shoulder">{offered}</joint>'
     group = (
         "  ros__parameters:\n    type: {0}_controllers/JointGroup{1}Controller\n    joints: [{2}]\n"
     )
@@ -872,10 +881,16 @@ def test_a_controller_that_a_launch_file_starts_must_start_if_the_robot_names_it
     verdict = try_robot(
         tmp_path / "arm" / "arm.xacro", standing=1.0, launches=launches_near(tmp_path)
     )
-    assert verdict.controllers == ("a",)
     (fault,) = verdict.faults
-    assert (fault.test, fault.subject, fault.code) == ("controller", "b", CONTROLLER_NOT_STARTED)
-    assert fault.reason.values["cause"] == CONTROLLER_INTERFACE_MISMATCH.number
+    if len(interfaces) == 1:
+        assert verdict.controllers == ("a",)
+        wanted = ("controller", "b", CONTROLLER_NOT_STARTED)
+        assert fault.reason.values["cause"] == CONTROLLER_INTERFACE_MISMATCH.number
+    else:
+        # As in gazebo_ros2_control, the joint follows its position commands.
+        assert verdict.controllers == ("a", "b")
+        wanted = ("spin", "shoulder", JOINT_SHARED)
+    assert (fault.test, fault.subject, fault.code) == wanted
     assert fault.source == "file"
 
 

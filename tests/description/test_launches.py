@@ -158,6 +158,14 @@ def test_xacro_ignores_an_argument_without_a_value(package):
     assert use.unknown == 0
 
 
+@pytest.mark.parametrize("words", ["--inactive b", "b --stopped", "--load-only b", "load b"])
+def test_controllers_that_a_spawner_only_loads_are_not_started(package, words):
+    more = f'<node name="m" pkg="controller_manager" type="spawner" args="{words}"/></launch>'
+    folder = package(sim_dot_launch=ROS1, control_dot_launch=CONTROL.replace("</launch>", more))
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == ("arm_controller", "joints")
+
+
 def test_launch_files_of_ros2_in_xml(package):
     folder = package(sim_dot_launch_dot_xml=ROS2_XML)
     use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))

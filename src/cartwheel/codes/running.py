@@ -93,3 +93,9 @@ CONTROLLERS_NOT_NAMED = Code(
     "warning",
     "a robot has a controller manager, but no controllers",
 )
+JOINT_SHARED = Code(
+    "CW527",
+    "joint-shared",
+    "warning",
+    "two controllers command a joint by different interfaces, and it follows one of them",
+)

@@ -281,9 +281,13 @@ def _is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
 
 
 def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:
-    return most_severe(
-        each for each in found if each.code in _JOINTS and joint in _joints_of(each)
-    ) or most_severe(each for each in found if _is_heavy(each, child))
+    shared = (each for each in found if each.code is running.JOINT_SHARED)
+    lost = next((each for each in shared if each.values.get("joint") == joint), None)
+    return (
+        lost
+        or most_severe(each for each in found if each.code in _JOINTS and joint in _joints_of(each))
+        or most_severe(each for each in found if _is_heavy(each, child))
+    )
 
 
 def _joints_of(each: Diagnostic) -> tuple[object, ...]:

@@ -45,6 +45,8 @@ _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
 """Options of ``ros2 control load_controller`` with a value."""
+_INACTIVE = ("--inactive", "--stopped", "--load-only")
+"""Options of a spawner that only loads controllers."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
 
@@ -339,16 +341,17 @@ class Facts:
 
     def _spawn(self, words: list[str], space: str) -> None:
         space = manager_space(words, space)
+        starts = not any(word in _INACTIVE or word == "load" for word in words)
         skip = False
         for index, word in enumerate(words):
             if skip:
                 skip = False
             elif word.startswith("-"):
                 # Options with a value, such as --controller-manager /controller_manager.
-                skip = word not in ("--inactive", "--stopped", "--load-only", "--activate-as-group")
+                skip = word not in (*_INACTIVE, "--activate-as-group")
                 if word in ("-p", "--param-file") and index + 1 < len(words):
                     self.parameters(words[index + 1], within=space)
-            elif word not in ("spawn", "load", "start") and re.fullmatch(r"[\w/]+", word):
+            elif starts and word not in ("spawn", "start") and re.fullmatch(r"[\w/]+", word):
                 self.spawned.append((space, word.rsplit("/", 1)[-1]))
 
     def parameters(self, text: str, namespace: str = "", *, within: str | None = None) -> None:

@@ -35,6 +35,9 @@ from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import Origin
 
+_GZ_PRIORITIES = ("velocity", "position", "effort")
+"""The command that a joint with several commands follows in gz_ros2_control, the first one."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros2ControlParameters:
@@ -148,6 +151,7 @@ class Ros2Control(ControlPlugin):
             ros2=True,
             sensors=self._sensors(),
             push=self._push(entry.type for entry in entries),
+            priorities=("position", "velocity", "effort") if forced else _GZ_PRIORITIES,
         )
         manager = self._run(robot, rate)
         self._start(entries)

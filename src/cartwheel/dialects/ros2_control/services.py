@@ -226,7 +226,8 @@ class Ros2ManagerServices(ManagerServices):
                     values={"controller": away[0]},
                 )
             wanted = [name for name in start if name not in (*unready, *away)]
-            self._manager.switch(wanted, stop, strict=strict)
+            names = [each.name for each in self._manager.controllers]
+            self._manager.switch(wanted, stop, strict=strict, sharing=names)
         except CartwheelError as error:
             self._manager.robot.report_error(error)
             return self._response("SwitchController", ok=False, message=error.message)

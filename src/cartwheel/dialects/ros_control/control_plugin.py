@@ -112,7 +112,7 @@ class ControlPlugin(Plugin[Any]):
         for entry in in_order(listed, chosen):
             try:
                 files.loaded.append(manager.load_entry(entry))
-                manager.switch([entry.name], [])
+                manager.switch([entry.name], [], sharing=chosen if manager.robot.ros2 else ())
             except CartwheelError as error:
                 self.part.report(
                     running.CONTROLLER_NOT_STARTED.because(

@@ -169,6 +169,10 @@ class Controller(Component):
         self.interfaces[joint] = interface
         return hardware
 
+    def required(self, joint: str) -> frozenset[str]:
+        """The command interfaces of a claimed joint that no other controller may command."""
+        return frozenset((self.interfaces[joint],))
+
     def export(self, joint: JointHardware, interface: str) -> Reference:
         """Creates a reference interface, by which other controllers can command the joint."""
         reference = Reference(self.name, joint, interface)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from cartwheel.codes import devices
+from cartwheel.codes import devices, running
 from cartwheel.dialects.ros_control.catalogue import find_type
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerEntry
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.sharing import SharedJoints
 from cartwheel.dialects.ros_control.switching import (
     plan_switch,
     update_order,
@@ -61,6 +62,7 @@ class ControllerManager:
         """Topics of quantities that are only known after a step."""
         self._sensing: list[Controller] = []
         """The running controllers that publish such quantities."""
+        self._shares = SharedJoints(robot.priorities)
         robot.take_over = self.take_over
         self.writes = True
         """Whether each update applies the commands to the joints; otherwise `write` does."""
@@ -147,7 +149,14 @@ class ControllerManager:
         for each in self.controllers:
             self.unload(each.name)
 
-    def switch(self, start: Sequence[str], stop: Sequence[str], *, strict: bool = True) -> None:
+    def switch(
+        self,
+        start: Sequence[str],
+        stop: Sequence[str],
+        *,
+        strict: bool = True,
+        sharing: Collection[str] = (),
+    ) -> None:
         """Stops some controllers and starts others at the next update.
 
         Args:
@@ -155,6 +164,7 @@ class ControllerManager:
             stop: Names of the controllers to stop.
             strict: Change nothing if one of them cannot be switched; otherwise switch all that can
                 be.
+            sharing: See `plan_switch`.
 
         Raises:
             GraphError: With `strict`, if a controller is not loaded, already is in the requested
@@ -166,6 +176,7 @@ class ControllerManager:
             start=start,
             stop=stop,
             report=None if strict else self.robot.report_error,
+            sharing=sharing,
         )
         for controller in switch.stopping:
             controller.running = False
@@ -214,24 +225,40 @@ class ControllerManager:
             seconds = (time_ns - last_ns) / 1e9
         if self._stopping:
             for controller in self._stopping:
-                controller.end(time_ns)
-                for joint in controller.claims.values():
-                    joint.release()
+                with self._shares.kept(controller):
+                    controller.end(time_ns)
+                self._shares.end(controller)
             self._stopping.clear()
         if self._starting:
             for controller in self._starting:
-                for name, joint in controller.claims.items():
-                    joint.activate(controller.interfaces[name])
-                controller.begin(time_ns)
+                self._shares.begin(controller)
+                with self._shares.kept(controller):
+                    controller.begin(time_ns)
+                self._report_shared(controller)
             self._starting.clear()
+        shared = self._shares.any
         for controller in self._order:
             if controller.running:
                 if time_ns >= controller.next_ns:
-                    controller.update(time_ns, seconds)
+                    if shared:
+                        with self._shares.kept(controller):
+                            controller.update(time_ns, seconds)
+                    else:
+                        controller.update(time_ns, seconds)
             else:
                 controller.idle(time_ns)
         if self.writes:
             self._hardware.write(seconds)
+
+    def _report_shared(self, controller: Controller) -> None:
+        for joint, interface, other, followed in self._shares.lost(controller):
+            self.robot.plugin.warn(
+                running.JOINT_SHARED,
+                f'joint "{joint.name}" ignores the {interface} commands of controller '
+                f'"{other.name}", because another controller commands its {followed}, as in Gazebo',
+                at=joint.interfaces.origin,
+                values={"joint": joint.name, "controller": other.name, "followed": followed},
+            )
 
     def write(self) -> None:
         """Applies the commands to the joints between updates; called at every step."""
@@ -259,6 +286,7 @@ class ControllerManager:
         self._last_ns = None
         self._stopping.clear()
         self._starting = [each for each in self._controllers.values() if each.running]
+        self._shares.clear()
         for controller in self._starting:
             controller.interrupt()
             controller.started = False

@@ -37,6 +37,7 @@ class ControlledRobot:
         ros2: Use the names and defaults of ros2_control.
         sensors: Sensors that broadcasters can publish.
         push: Servo that moves the whole robot; None if no controller needs one.
+        priorities: The command interfaces. A joint with several commands follows the first one.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class ControlledRobot:
         ros2: bool,
         sensors: Sequence[RobotSensor] = (),
         push: BodyDriveHandle | None = None,
+        priorities: Sequence[str] = ("position", "velocity", "effort"),
     ) -> None:
         self.plugin = plugin
         self.hardware = hardware
@@ -55,6 +57,7 @@ class ControlledRobot:
         self.ros2 = ros2
         self.sensors = {each.name: each for each in sensors}
         self.push = push
+        self.priorities = tuple(priorities)
         """Moves a robot whose wheels cannot do so by friction: mecanum wheels without rollers."""
         self.period_ns = 0
         """Control period, ns."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from cartwheel.codes import running
@@ -26,6 +26,7 @@ def plan_switch(
     start: Sequence[str],
     stop: Sequence[str],
     report: Callable[[CartwheelError], None] | None,
+    sharing: Collection[str] = (),
 ) -> Switch:
     """Returns the controllers that can stop and start.
 
@@ -36,6 +37,8 @@ def plan_switch(
         stop: Names of the controllers to stop.
         report: Reports conflicts, and the other controllers are switched. None: a conflict is
             raised.
+        sharing: Names of controllers that may command one joint together, by different interfaces,
+            as in ROS 2.
 
     Raises:
         GraphError: Without `report`, if a controller is not loaded, already is in the requested
@@ -61,12 +64,10 @@ def plan_switch(
         controller = controllers.get(name)
         if controller in stopping and controller not in starting and controller is not None:
             starting.append(controller)
-    commanded = {
-        joint: each.name
-        for each in controllers.values()
-        if each.running and each not in stopping
-        for joint in each.claims
-    }
+    commanded: dict[str, list[Controller]] = {}
+    for each in controllers.values():
+        if each.running and each not in stopping:
+            _claim(each, commanded)
     # References of these controllers can be commanded.
     remaining = [
         each
@@ -75,11 +76,11 @@ def plan_switch(
     ]
     able = []
     for controller in starting:
-        conflict = _conflict_of(controller, remaining, commanded)
+        conflict = _conflict_of(controller, remaining, commanded, sharing)
         if conflict is not None:
             refuse(conflict)
             continue
-        commanded.update(dict.fromkeys(controller.claims, controller.name))
+        _claim(controller, commanded)
         able.append(controller)
     return Switch(stopping=stopping, starting=able)
 
@@ -158,19 +159,32 @@ def _switchable(
     return None
 
 
+def _claim(controller: Controller, commanded: dict[str, list[Controller]]) -> None:
+    for joint in controller.claims:
+        commanded.setdefault(joint, []).append(controller)
+
+
 def _conflict_of(
-    controller: Controller, remaining: Sequence[Controller], commanded: Mapping[str, str]
+    controller: Controller,
+    remaining: Sequence[Controller],
+    commanded: Mapping[str, Sequence[Controller]],
+    sharing: Collection[str],
 ) -> GraphError | None:
     """Returns why a controller cannot start; None if it can.
 
     Args:
         controller: The controller.
         remaining: Controllers that will run.
-        commanded: The commanding controller of each commanded joint.
+        commanded: The commanding controllers of each commanded joint.
+        sharing: See `plan_switch`.
     """
     for name, claim in controller.claims.items():
-        if name in commanded:
-            by, why = commanded[name], f'joint "{name}" is commanded by "{commanded[name]}"'
+        rival = next(
+            (each for each in commanded.get(name, ()) if _rivals(controller, each, name, sharing)),
+            None,
+        )
+        if rival is not None:
+            by, why = rival.name, f'joint "{name}" is commanded by "{rival.name}"'
         elif isinstance(claim, Reference) and not _offered(claim, remaining):
             by, why = claim.owner, f'it commands "{claim.owner}", which is not running'
         else:
@@ -178,6 +192,13 @@ def _conflict_of(
         message = f'controller "{controller.name}" cannot start: {why}'
         return _conflict(controller.name, message, by=by)
     return None
+
+
+def _rivals(one: Controller, other: Controller, joint: str, sharing: Collection[str]) -> bool:
+    """Whether two controllers cannot command a joint at the same time."""
+    if one.name not in sharing or other.name not in sharing:
+        return True
+    return not one.required(joint).isdisjoint(other.required(joint))
 
 
 def _offered(claim: Reference, remaining: Sequence[Controller]) -> bool:

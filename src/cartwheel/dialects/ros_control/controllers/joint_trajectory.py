@@ -134,6 +134,8 @@ class JointTrajectoryController(Controller):
         if not self._names:
             raise settings.invalid("joints", self._names, "a list of at least one joint")
         self._interface = self._read_interface(given)
+        listed = given.interfaces if self.type.startswith("joint_") else ()
+        self._listed = frozenset(listed)
         self._joints: list[JointHardware] = [
             self.claim(name, self._interface) for name in given.commanded
         ]
@@ -213,6 +215,9 @@ class JointTrajectoryController(Controller):
         self._goals.stop()
 
     # -- parameters
+
+    def required(self, joint: str) -> frozenset[str]:
+        return super().required(joint) | self._listed
 
     def _read_interface(self, given: TrajectoryParameters) -> Interface:
         prefix = self.type.partition("_")[0]
