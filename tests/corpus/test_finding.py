@@ -52,6 +52,23 @@ EYE = (
 )
 
 
+def test_a_part_is_found_in_a_package_whose_folder_has_another_name(folder):
+    """As in a clone whose folder is named after the repository."""
+    package = "<package><name>cart</name></package>"
+    part = LINK.format("front") + LINK.format("rear")
+    whole = '<xacro:include filename="$(find cart)/urdf/links.xacro"/>' + LINK.format("base")
+    joints = "".join(
+        f'<joint name="{each}" type="fixed"><parent link="base"/><child link="{each}"/></joint>'
+        for each in ("front", "rear")
+    )
+    files = {
+        "clone__package_dot_xml": package,
+        "clone__urdf__links_dot_xacro": XACRO.format(' name="links"', part),
+        "clone__urdf__cart_dot_xacro": XACRO.format(' name="cart"', whole + joints),
+    }
+    assert folder(**files) == ["clone/urdf/cart.xacro"]
+
+
 def test_macros_that_attach_sensors_to_a_robot_elsewhere_are_a_part(folder):
     calls = '<xacro:include filename="eye.xacro"/><xacro:eye parent="base"/>'
     found = folder(

@@ -14,6 +14,7 @@ from cartwheel.corpus.movers import is_mover
 from cartwheel.corpus.worlds import robots_in_worlds, text_of
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
+from cartwheel.description.files.package_folders import package_above, package_name
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.use import SUFFIXES, LaunchUse
 from cartwheel.description.loading import open_description, understand
@@ -144,7 +145,8 @@ class _Folder:
     def kind(self, path: Path) -> Kind | None:
         """Why a file is not a robot; None for a robot."""
         launched = path.resolve() in self.launched
-        part = not launched and any(one.search(path.as_posix()) for one in self.included)
+        places = _places(path)
+        part = not launched and _is_among(self.included, places)
         if path.name.endswith(_WORLDS):
             return "world"
         try:
@@ -156,7 +158,7 @@ class _Folder:
                 return "macros"
             if launched:
                 return None
-            if any(one.search(path.as_posix()) for one in self.parts):
+            if _is_among(self.parts, places):
                 return "part"
             if part:
                 understand(opened)
@@ -206,6 +208,19 @@ class _Folder:
     def _links(self) -> Mapping[Path, frozenset[str]]:
         """The names of the links in each text."""
         return {path: frozenset(_LINK.findall(text)) for path, text in self.texts.items()}
+
+
+def _places(path: Path) -> list[str]:
+    """A file's path, and that below the name of its package, whose folder may have another name."""
+    package = package_above(path.parent)
+    name = package_name(package) if package is not None else None
+    if package is None or name is None:
+        return [path.as_posix()]
+    return [path.as_posix(), f"/{name}/{path.relative_to(package).as_posix()}"]
+
+
+def _is_among(patterns: Sequence[re.Pattern[str]], places: Sequence[str]) -> bool:
+    return any(one.search(place) for one in patterns for place in places)
 
 
 def _missing_parents(root: Node) -> set[str]:
