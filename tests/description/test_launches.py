@@ -243,6 +243,7 @@ def test_a_part_of_a_joined_path_may_be_a_list_of_substitutions(package):
             False,
         ),
         ('["ros2", "run", "controller_manager", "spawner", "arm_controller", "-t", "t/T"]', False),
+        ('["ros2", "control", "load_controller", "arm_controller", "--set-state", "inactive"]', 0),
     ],
 )
 def test_a_command_of_ros2_starts_a_controller(package, command, shell):
@@ -255,7 +256,7 @@ def test_a_command_of_ros2_starts_a_controller(package, command, shell):
 """
     folder = package(arm_dot_launch_dot_py=text)
     use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
-    assert use.spawned == ("arm_controller",)
+    assert use.spawned == ("arm_controller",) * ("inactive" not in command)
     assert [each.name for each in use.controllers] == (["a.yaml"] if "a.yaml" in command else [])
 
 

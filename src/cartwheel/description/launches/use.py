@@ -335,7 +335,7 @@ class Facts:
             elif not word.startswith("-"):
                 positional.append(word)
         space = manager_space(words, "")
-        self._spawn(positional[:1], space)
+        self._spawn([] if "inactive" in words else positional[:1], space)
         for each in positional[1:2]:
             self.parameters(each, within=space)
 

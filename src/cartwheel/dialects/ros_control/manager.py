@@ -11,8 +11,8 @@ from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerEntry
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.settings import Settings
-from cartwheel.dialects.ros_control.sharing import SharedJoints
 from cartwheel.dialects.ros_control.switching import (
+    SharedJoints,
     plan_switch,
     update_order,
     with_leaders,
