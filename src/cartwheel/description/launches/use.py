@@ -45,8 +45,7 @@ _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
 """Options of ``ros2 control load_controller`` with a value."""
-_INACTIVE = ("--inactive", "--stopped", "--load-only")
-"""Options of a spawner that only loads controllers."""
+_INACTIVE = ("--inactive", "--stopped", "--load-only")  # of a spawner that only loads controllers
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
 
