@@ -6,13 +6,13 @@ from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Array, Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
 from cartwheel.simulation.carried_state import STATE_SIZES, carry_over
 from cartwheel.simulation.clock import Task, Topic, to_ns
+from cartwheel.simulation.computed import Computed
 from cartwheel.simulation.dynamics.carried import LOOK
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.stepping import Stepping
@@ -26,11 +26,10 @@ from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.pairs import Alignment
 
 _OBJ = mujoco.mjtObj
-_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
 
-class Engine:
+class Engine(Computed):
     """MuJoCo's model and data with integer time.
 
     Args:
@@ -42,6 +41,7 @@ class Engine:
     def __init__(
         self, world: WorldDescription, seed: int, without: Collection[Addition] = ()
     ) -> None:
+        super().__init__()
         self.world = world
         self.seed = seed
         self.without = without
@@ -52,8 +52,6 @@ class Engine:
         """Steps since `origin_ns`."""
         self.origin_ns = 0
         """The time of the last change of the step length; initially zero."""
-        self.carries = False
-        """Whether bodies that touch turn together; see `Carried`."""
         self.commanded = 0
         """Number of external actions: moves, pushes and drive commands."""
         self.rewinds = 0
@@ -65,8 +63,6 @@ class Engine:
         """Number of tasks that had been created then."""
         self.tasks_created = 0
         """Number of tasks created so far, which is the order of the next one."""
-        self.model: Any = None
-        self.data: Any = None
         self.visuals = VisualModel()
         self.ray_scenes = SharedRayScenes()
         self.renderer = Renderer(self.visuals)
@@ -78,15 +74,9 @@ class Engine:
         """Called after a task was replaced."""
         self.on_entries: list[Callable[[], None]] = []
         """Called after an addition to a model that is already compiled."""
-        self.serving = False
-        """Whether tasks run that read a forward pass, which the next step uses."""
         self.directions: Directions | None = None
-        self.changes = self.revisions = 0
-        """Changes of the model and of forces outside of the state, and of the model alone."""
-        self._posed = self._located = b""
-        """The state of the last `locate`."""
-        self.refreshed = b""
-        """The state of the last `refresh`; empty after a step."""
+        self.revisions = 0
+        """Changes of the model alone."""
         self._places: dict[tuple[str, str], tuple[Array, Array]] = {}
         """Positions and orientations of links in the data, by model and link."""
         self._inverses: dict[str, tuple[RobotDescription, Pose | None]] = {}
@@ -166,12 +156,10 @@ class Engine:
             carry_over(self.model, self.data, model, data)
         self.model, self.data = model, data
         self.align(alignments)
-        self.stepping = Stepping(model, data, bounces)
+        self._bind(Stepping(model, data, bounces))
         # Otherwise nothing would look for such bodies again, and each step would take longer.
         self.carries = self.carries and self.stepping.carried is not None
         self.visuals.bind(model, data, compile_visuals)
-        self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
-        self._posed = self._located = self.refreshed = b""
         self._places.clear()
         self._inverses.clear()
 
@@ -199,90 +187,6 @@ class Engine:
             self.directions = Directions(self.model, alignments)
         except SimulationError as error:
             self.report(error.diagnostic("warning"))
-
-    def note_change(self) -> None:
-        """Makes the next `refresh` compute a forward pass, after a change of the model.
-
-        While tasks read the forward pass of a step, it is computed at once.
-        """
-        self.changes += 1
-        if self.serving:
-            self.forward()
-
-    def refresh(self) -> None:
-        """As `forward`, but only if the state differs from that of the last call.
-
-        Neither the state nor any later state depends on it.
-
-        Raises:
-            SimulationError: There is not enough memory for the contacts.
-        """
-        if self.serving:
-            return
-        state = self.signature()
-        if state != self.refreshed:
-            self.forward()
-            self._posed = self._located = self.refreshed = state
-
-    def signature(self) -> bytes:
-        """Differs for any two states with different poses, contacts or forces."""
-        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        return self._state.tobytes() + self.changes.to_bytes(8)
-
-    def forward(self, data: Any = None) -> None:
-        """Computes poses, contacts and forces for the current state, which does not change.
-
-        Args:
-            data: A copy of the data with the state; None for the data itself.
-
-        Raises:
-            SimulationError: There is not enough memory for the contacts.
-        """
-        if data is None:
-            data = self.data
-            self._posed = self._located = self.refreshed = b""
-        self.stepping.forward(data, carries=self.carries)
-
-    def refresh_poses(self) -> None:
-        """Computes poses, but only if the state differs from that of the last call."""
-        if self.serving:
-            return
-        state = self.signature()
-        if state != self._posed:
-            mujoco.mj_kinematics(self.model, self.data)
-            self._posed, self._located, self.refreshed = state, b"", b""
-
-    def refresh_motion(self) -> None:
-        """As `locate`, but only if the state differs from that of the last call."""
-        if self.serving:
-            return
-        state = self.signature()
-        if state != self._located:
-            self.locate(poses=state != self._posed)
-            self._posed, self._located, self.refreshed = state, state, b""
-
-    def keep(self) -> None:
-        """Lets the next step and `refresh` use the forward pass that was just made, unless the
-        state changes before.
-        """
-        self._posed = self._located = self.refreshed = self.signature()
-
-    def is_refreshed(self) -> bool:
-        """Whether the results of the last forward pass are those of the current state."""
-        return bool(self.refreshed) and self.refreshed == self.signature()
-
-    def locate(self, *, poses: bool = True) -> None:
-        """Computes only poses and velocities for the current state.
-
-        Args:
-            poses: False if the poses have been computed.
-        """
-        if poses:
-            mujoco.mj_kinematics(self.model, self.data)
-        mujoco.mj_comPos(self.model, self.data)
-        mujoco.mj_comVel(self.model, self.data)
-        if self.stepping.moved is not None:
-            self.stepping.moved.set_velocities(self.data)
 
     def advance(self, count: int, forwarded: bool) -> None:
         """Runs simulation steps.
