@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tag_roles import WHEEL_ROLES
 
 FILES = Path(__file__).parent / "examples"
 """Examples that are written by hand, and the package that they name."""
@@ -245,7 +246,12 @@ def _joint_names(plugin: type[Plugin[Any]]) -> list[str]:
     names = list(_JOINTS)
     for item, _ in fields(plugin):
         texts = item.default if isinstance(item.default, tuple) else (item.default,)
-        names += [text for text in texts if isinstance(text, str) and text.endswith("_joint")]
+        is_wheel = item.metadata["role"] in WHEEL_ROLES
+        names += [
+            text
+            for text in texts
+            if isinstance(text, str) and text and (is_wheel or text.endswith("_joint"))
+        ]
     return list(dict.fromkeys(names))
 
 

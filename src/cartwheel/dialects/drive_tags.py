@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from cartwheel.devices.drives.odometry import planar_covariance
+from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import Array
+from cartwheel.simulation import Part
 
 # The functions return Any, as `tag` does, because a field with a tag can have any type. Each takes
 # the names of the tag, because plugins differ in the spellings that they accept.
@@ -104,3 +106,13 @@ def covariance(config: Any) -> Array:
         config: Parameters with the fields `covariance_x`, `covariance_y` and `covariance_yaw`.
     """
     return planar_covariance(config.covariance_x, config.covariance_y, config.covariance_yaw)
+
+
+def commands_only(part: Part) -> DriveConfig:
+    """Returns the topics of a drive that publishes no odometry."""
+    root = part.description.canonical_link
+    return DriveConfig(
+        command_topic="cmd_vel",
+        control_rate=0.0,
+        odometry=OdometryConfig(topic=None, frame="odom", base=root, transform=False),
+    )

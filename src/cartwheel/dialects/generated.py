@@ -8,10 +8,12 @@ the startup.
 PLUGINS = {
     "ArduPilotPlugin": "makers.flying.ardupilot",
     "BuoyancyPlugin": "gz.fluids.buoyancy",
+    "DiffDrivePlugin": "classic.drives.model_drives",
     "ElevatorPlugin": "classic.mechanisms.elevator",
     "HarnessPlugin": "classic.mechanisms.harness",
     "LiftDragPlugin": "gz.fluids.lift_drag",
     "SimpleTrackedVehiclePlugin": "classic.drives.tracked_vehicle",
+    "SkidSteerDrivePlugin": "classic.drives.model_drives",
     "WheelSlipPlugin": "classic.forces.wheel_slip",
     "WheelTrackedVehiclePlugin": "classic.drives.tracked_vehicle",
     "WindPlugin": "gz.forces.wind_effects",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -10,13 +11,14 @@ import numpy as np
 from cartwheel.codes import devices, robot
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import RobotDescription
+from cartwheel.description.solids import bounds, solid_of
 from cartwheel.devices.drives.differential import (
     DifferentialDrive,
     DifferentialDriveConfig,
     WheelPair,
 )
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import SMALLEST
+from cartwheel.dialects.tags import SMALLEST, invalid
 from cartwheel.errors import PluginError
 from cartwheel.geometry import rotate
 from cartwheel.simulation.limits import FARTHEST
@@ -65,6 +67,41 @@ def wheel_pairs(
             )
         )
     return tuple(pairs)
+
+
+def box_radius(plugin: Plugin[Any], joint: str) -> float:
+    """Returns half the longest edge of the bounding box of a wheel's collisions, m.
+
+    Raises:
+        UnknownNameError: The joint does not exist.
+        PluginError: The wheel has no collision.
+    """
+    plugin.part.joint(joint, origin=plugin.origin)
+    description = plugin.part.description
+    described: Any = description.joint(joint)
+    link: Any = description.link(described.child)
+    pose = link_poses(description, {})[link.name]
+    solids = (solid_of(each, link.name) for each in link.collisions)
+    box = bounds([solid.placed(pose) for solid in solids if solid is not None])
+    if box is None:
+        raise invalid("joint", joint, "the joint of a wheel with a collision", plugin.origin)
+    return float((box[1] - box[0]).max()) / 2
+
+
+def joint_distance(plugin: Plugin[Any], one: str, other: str) -> float:
+    """Returns the distance between the origins of two joints at zero joint positions, m.
+
+    Raises:
+        UnknownNameError: A joint does not exist.
+    """
+    description = plugin.part.description
+    poses = link_poses(description, {})
+    places = []
+    for name in (one, other):
+        plugin.part.joint(name, origin=plugin.origin)
+        joint: Any = description.joint(name)
+        places.append((poses[joint.child] @ joint.pose).position)
+    return math.dist(*places)
 
 
 def add_differential_drive(

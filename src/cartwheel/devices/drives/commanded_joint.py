@@ -36,6 +36,7 @@ class Wheel:
         joint: Name of the joint.
         max_effort: Maximum torque, N m; None: the effort limit of the joint.
         limited: Whether the joint's velocity limit applies.
+        beyond: Whether the torque may exceed the joint's effort limit.
         origin: Origin for errors.
 
     Raises:
@@ -49,11 +50,14 @@ class Wheel:
         *,
         max_effort: float | None,
         limited: bool = False,
+        beyond: bool = False,
         origin: Origin | None,
     ) -> None:
         self.state = part.joint(joint, origin=origin)
         self._fastest = velocity_limit(part.description.joint(joint)) if limited else math.inf
-        self._motor = part.velocity_motor(joint, max_effort=max_effort, origin=origin)
+        self._motor = part.velocity_motor(
+            joint, max_effort=max_effort, beyond=beyond, origin=origin
+        )
 
     @property
     def position(self) -> float:

@@ -42,6 +42,8 @@ class DifferentialDriveConfig:
     """The wheels. The first pair's separation and radii are used for the odometry."""
     max_torque: float | None = None
     """Maximum torque of each wheel, N m; None: the joints' effort limits."""
+    effort_limits: bool = True
+    """Whether the joints' effort limits apply."""
     max_rim_speed: float = math.inf
     """Maximum commanded rim speed of the wheels, m/s."""
     acceleration: float = 0.0
@@ -265,6 +267,7 @@ class DifferentialDrive(Drive):
             joint,
             max_effort=config.max_torque,
             limited=config.drive is not None and config.drive.limited_joints,
+            beyond=not config.effort_limits,
             origin=self.origin,
         )
 

@@ -7,18 +7,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
 
-from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Cylinder
-from cartwheel.description.solids import bounds, solid_of
 from cartwheel.devices.drives.differential import DifferentialDriveConfig, WheelPair
-from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.limiter import Limits
-from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.drives.track import TrackConfig
 from cartwheel.devices.drives.tracked_vehicle import TrackedVehicle, TrackedVehicleConfig
+from cartwheel.dialects.drive_tags import commands_only
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import SMALLEST, invalid, missing, tag
-from cartwheel.dialects.wheel_pairs import add_differential_drive
+from cartwheel.dialects.tags import SMALLEST, missing, tag
+from cartwheel.dialects.wheel_pairs import add_differential_drive, box_radius
 from cartwheel.geometry import IDENTITY, Vec3
 from cartwheel.world.entry import Grip
 
@@ -125,15 +122,6 @@ class _Tracks(Plugin[C]):
         stated = self.tag.element.find("robot_namespace")
         self.namespace = self.part.name if stated is None else self.config.namespace.strip()
 
-    def _drive(self) -> DriveConfig:
-        """The topic of the commands; the plugins publish no odometry."""
-        root = self.part.description.canonical_link
-        return DriveConfig(
-            command_topic="cmd_vel",
-            control_rate=0.0,
-            odometry=OdometryConfig(topic=None, frame="odom", base=root, transform=False),
-        )
-
     def _limits(self) -> tuple[Limits, Limits]:
         """The limits on the forward speed and on the yaw rate."""
         config = self.config
@@ -196,7 +184,7 @@ class SimpleTrackedVehicle(_Tracks[SimpleTracksParameters]):
                     most=config.speed,
                     linear=linear,
                     angular=angular,
-                    drive=self._drive(),
+                    drive=commands_only(self.part),
                 ),
             )
         )
@@ -247,7 +235,7 @@ class WheelTrackedVehicle(_Tracks[WheelTracksParameters]):
                 max_rim_speed=config.speed,
                 linear=linear,
                 angular=angular,
-                drive=self._drive(),
+                drive=commands_only(self.part),
             ),
         )
 
@@ -264,12 +252,7 @@ class WheelTrackedVehicle(_Tracks[WheelTracksParameters]):
         link: Any = description.link(described.child)
         if len(link.collisions) == 1 and isinstance(link.collisions[0].shape, Cylinder):
             return float(link.collisions[0].shape.radius)
-        pose = link_poses(description, {})[link.name]
-        solids = (solid_of(each, link.name) for each in link.collisions)
-        box = bounds([solid.placed(pose) for solid in solids if solid is not None])
-        if box is None:
-            raise invalid("joint", joint, "the joint of a wheel with a collision", self.origin)
-        return float((box[1] - box[0]).max()) / 2
+        return box_radius(self, joint)
 
 
 def _track(link: str) -> TrackConfig:
