@@ -200,8 +200,11 @@ Composed(entities(lambda: spawn))
         '[OpaqueFunction(function=launched, args=["a"], kwargs={"space": "one", "x": 1.0}),'
         ' OpaqueFunction(function=launched, args=["b"], kwargs={"x": 2.0})]',
         "[each for name, space, x in LIST for each in robot(name, space, x=x)]",
+        '[launch.actions.OpaqueFunction(function=launched, args=["a", "one"], kwargs={"x": 1.0}),'
+        ' launch.actions.OpaqueFunction(function=launched, args=["b"], kwargs={"x": 2.0})]',
+        'robot(*["a", "one"], **{"x": 1.0}) + robot(*["b"], **{"x": 2.0})',
     ],
-    ids=["calls", "opaque functions", "comprehension"],
+    ids=["calls", "opaque functions", "comprehension", "modules", "stars"],
 )
 def test_functions_of_a_file_are_evaluated_for_their_arguments(bot: Path, calls: str) -> None:
     node = spawner("NAME").replace('"NAME"', 'name, "-x", str(x)')
@@ -247,6 +250,66 @@ xacro.process_file(os.path.join(FindPackageShare("bot"), "urdf", file("bot")))
     assert model.description.name == "bot.xacro"
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        """
+    for each in ROBOTS:
+        if each["name"] == name:
+            return each["file"]
+    return "absent.urdf\"""",
+        """
+    for each in ROBOTS:
+        if each["name"] != name:
+            continue
+        file = each["file"]
+        break
+    else:
+        file = "absent.urdf"
+    return file""",
+        """
+    try:
+        return dict(a="bot.xacro", b="other.urdf")[name]
+    except KeyError:
+        pass
+    return "absent.urdf\"""",
+    ],
+    ids=["return", "continue and break", "try"],
+)
+def test_loops_and_functions_end_where_python_ends_them(bot: Path, body: str) -> None:
+    text = f"""
+ROBOTS = [{{"name": "a", "file": "bot.xacro"}}, {{"name": "b", "file": "other.urdf"}}]
+def file(name):{body}
+for name in ["a", "b"]:
+    Node(package="gazebo_ros", executable="spawn_entity.py", arguments=["-entity", name, "-file",
+         os.path.join(FindPackageShare("bot"), "urdf", file(name))])
+"""
+    start = read_launch(written(bot, "a.launch.py", text), {})
+    assert started(start) == [("a", "bot.xacro", ""), ("b", "other.urdf", "")]
+
+
+def test_a_loop_over_unknown_values_may_not_be_executed(bot: Path) -> None:
+    text = f"""
+def launched(name):
+    for each in unknown():
+        return []
+    return [{spawner("a")}]
+launched("a")
+"""
+    assert started(read_launch(written(bot, "a.launch.py", text), {})) == [("a", "other.urdf", "")]
+
+
+def test_functions_that_nest_too_deeply_end(bot: Path) -> None:
+    levels = 60
+    functions = "".join(
+        f"def f{number}(x):\n    return {'[' * levels}f{number + 1}(x){']' * levels}\n"
+        for number in range(9)
+    )
+    text = f"{spawner('a')}\n{functions}def f9(x):\n    return x\nf0(1)\n"
+    start = read_launch(written(bot, "a.launch.py", text), {})
+    assert all(name == "a" for name, _, _ in started(start))
+
+
 CONTROLLED = """
 def robot(name):
     return GroupAction([
@@ -267,8 +330,14 @@ Node(package="controller_manager", executable="spawner", arguments=["base", "leg
 @pytest.mark.parametrize(
     ("manager", "names"),
     [
-        ('"--inactive"', (("one_arm",), ("two_arm",), ("base", "leg"))),
+        ('"--activate-as-group"', (("one_arm",), ("two_arm",), ("base", "leg"))),
+        ('"--inactive"', (("one_arm",), ("two_arm",), None)),
         ('"-c", "/two/controller_manager"', (("one_arm",), ("two_arm", "base", "leg"), None)),
+        ('"--unload-on-kill", "top"', (("one_arm",), ("two_arm",), ("base", "leg", "top"))),
+        (
+            '"--controller-manager=/two/controller_manager"',
+            (("one_arm",), ("two_arm", "base", "leg"), None),
+        ),
         ('"-c", [UNKNOWN, "/controller_manager"]', (("one_arm",), ("two_arm",), ("base", "leg"))),
     ],
 )
@@ -314,15 +383,20 @@ def test_in_xml_each_robot_has_the_controllers_of_its_namespace(bot: Path) -> No
         ("odometry", "[]", "one", "/one/odometry"),
         ("/model/a/odometry", "[]", "one", None),
         ("/model/a/odometry", '[("/model/a/odometry", UNKNOWN)]', "one", None),
+        ("/model/a/odometry", '[], "-r", "/model/a/odometry:=odom", "-r", "x"', "one", "/one/odom"),
+        ("/model/a/odometry", '[], "--remap", "/model/a/odometry:=/odom"', "one", "/odom"),
+        ("/model/a/odometry", '[], "-r", "__ns:=/two"', "one", None),
     ],
 )
 def test_the_arguments_of_a_bridge_rename_topics(
     bot: Path, topic: str, remappings: str, space: str, ros: str | None
 ) -> None:
+    remappings, _, more = remappings.partition("], ")
+    remappings = remappings.removesuffix("]") + "]"
     text = f"""
 xacro.process_file("{bot}/urdf/bot.xacro")
 bridge = Node(package="ros_gz_bridge", executable="parameter_bridge", remappings={remappings},
-     arguments=["{topic}@nav_msgs/msg/Odometry[gz.msgs.Odometry", "--ros-args"])
+     arguments=["{topic}@nav_msgs/msg/Odometry[gz.msgs.Odometry", "--ros-args", {more}])
 GroupAction([PushRosNamespace("{space}"), bridge])
 """
     renamed = read_launch(written(bot, "a.launch.py", text), {}).renamed

@@ -237,6 +237,7 @@ def test_a_part_of_a_joined_path_may_be_a_list_of_substitutions(package):
             False,
         ),
         ('["ros2 control load_controller -c /cm --set-state start ", "arm_controller"]', True),
+        ('["ros2 control load_controller --set-state=inactive ", "arm_controller"]', True),
         ('[[FindExecutable(name="ros2"), " control load_controller arm_controller"]]', True),
         (
             '["ros2", "control", "load_controller", "arm_controller", share + "/config/a.yaml"]',

@@ -58,9 +58,10 @@ def called_functions(tree: ast.Module) -> dict[str, ast.FunctionDef]:
     for each in ast.walk(tree):
         if isinstance(each, ast.FunctionDef):
             defined[each.name] = each
-        elif isinstance(each, ast.Call) and isinstance(each.func, ast.Name):
-            names.add(each.func.id)
-            if each.func.id == "OpaqueFunction" and any(
+        elif isinstance(each, ast.Call):
+            if isinstance(each.func, ast.Name):
+                names.add(each.func.id)
+            if name_of(each.func) == "OpaqueFunction" and any(
                 word.arg in ("args", "kwargs") for word in each.keywords
             ):
                 names |= {

@@ -9,9 +9,9 @@ from __future__ import annotations
 import ast
 import contextlib
 import functools
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, Literal
 
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.bridging import BRIDGES
@@ -52,6 +52,9 @@ from cartwheel.description.launches.use import SUFFIXES, Facts
 
 _STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
 """Actions that start nodes or read files."""
+_End = Literal["", "continue", "break", "return"]
+_ENDS: Sequence[_End] = ("", "continue", "break", "return")
+"""How a block ends; empty if the statements after it may be executed."""
 _DEEPEST_CALL = 8
 """Maximum nesting of calls of functions that the file defines."""
 _MOST_TURNS = 500
@@ -109,7 +112,11 @@ class _Reader:
     def file(self, tree: ast.Module) -> None:
         """Evaluates a launch file. Actions that it assigns, but does not use are started last."""
         self._functions = called_functions(tree)
-        self.block(tree.body)
+        space = self._facts.namespace
+        try:
+            self.block(tree.body)
+        except RecursionError:  # the rest of the file is unknown
+            self._facts.namespace = space
         for each in self._started:
             if not each.skipped:
                 with self._within(each.space):
@@ -121,13 +128,13 @@ class _Reader:
         yield
         self._facts.namespace = before
 
-    def block(self, statements: Iterable[ast.stmt]) -> bool:
+    def block(self, statements: Iterable[ast.stmt]) -> _End:
         """Evaluates statements in their order; of branches, all that may be executed.
 
         The body of a loop is evaluated for each value, or once if the values are unknown.
 
         Returns:
-            Whether the function certainly returns in it.
+            The statement that certainly ends it.
         """
         for each in statements:
             self._facts.effort.spend()
@@ -146,28 +153,42 @@ class _Reader:
                 self.value(each.value)
             elif isinstance(each, ast.Return):
                 self._result = NOTHING if each.value is None else self.value(each.value)
-                return True
+                return "return"
+            elif isinstance(each, ast.Break | ast.Continue):
+                return "break" if isinstance(each, ast.Break) else "continue"
             elif isinstance(each, ast.For):
-                for item in self._items(each.iter):
-                    self._assign(each.target, item)
-                    self.block(each.body)
-                self.block(each.orelse)
+                if end := self._loop(each):
+                    return end
             elif isinstance(each, ast.If):
                 holds = self._holds(each.test)
                 body = self.block([] if holds is False else each.body)
                 other = self.block([] if holds is True else each.orelse)
                 if (body or holds is False) and (other or holds is True):
-                    return True
+                    # Of different ends, the one after which more may be executed.
+                    return min({body, other} - {""}, key=_ENDS.index)
             elif isinstance(each, ast.With):
                 for item in each.items:
                     if item.optional_vars is not None:
                         self._assign(item.optional_vars, self.value(item.context_expr))
-                if self.block(each.body):
-                    return True
+                if end := self.block(each.body):
+                    return end
+            elif isinstance(each, ast.Try):
+                end = self.block(each.body) or self.block(each.orelse)
+                if end := self.block(each.finalbody) or end:
+                    return end
             else:
-                for name in ("body", "orelse", "finalbody"):
+                for name in ("body", "orelse"):
                     self.block(getattr(each, name, ()) or ())
-        return False
+        return ""
+
+    def _loop(self, loop: ast.For) -> _End:
+        """Evaluates a loop. One over unknown values may be executed any number of times."""
+        for item in self._items(loop.iter):
+            self._assign(loop.target, item)
+            end = self.block(loop.body)
+            if item is not NOTHING and end in ("return", "break"):
+                return end if end == "return" else ""
+        return self.block(loop.orelse)
 
     def _assigned(self, node: ast.expr) -> Any:
         """The value of an expression that is assigned: an action starts where it is used."""
@@ -303,12 +324,16 @@ class _Reader:
             return NOTHING  # the action is not executed, nor are those in it
         space = self._facts.namespace
         is_kept = name in ("append", "extend") and isinstance(holder, list)
-        places = [
-            (self._assigned if is_kept else self.value)(
-                each.value if isinstance(each, ast.Starred) else each
-            )
-            for each in node.args
-        ]
+        function = self._functions.get(name)
+        if function is not None:
+            places = self._elements(node.args, self.value)
+        else:
+            places = [
+                (self._assigned if is_kept else self.value)(
+                    each.value if isinstance(each, ast.Starred) else each
+                )
+                for each in node.args
+            ]
         words = {
             each.arg: self.value(each.value)
             for each in node.keywords
@@ -316,8 +341,10 @@ class _Reader:
         }
         if not named:
             return NOTHING
-        function = self._functions.get(name)
         if function is not None and isinstance(node.func, ast.Name):
+            for each in node.keywords:
+                given = self.value(each.value) if each.arg is None else NOTHING
+                words |= given if isinstance(given, dict) else {}
             return self._called(function, places, words)
         if name not in SAME and not is_kept:
             for value in (*places, *words.values()):

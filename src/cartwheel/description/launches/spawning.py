@@ -23,6 +23,12 @@ _IN_NAMESPACE = frozenset({"spawn_model", "spawn_entity.py"})
 _MANAGERS = frozenset({"-c", "--controller-manager"})
 _MANAGER_SPACES = frozenset({"-n", "--namespace"})
 """Options of spawners that state the controller manager, or its namespace."""
+INACTIVE = frozenset({"--inactive", "--stopped", "--load-only"})
+"""Options of spawners that only load controllers."""
+SWITCHES = INACTIVE | {"--activate-as-group", "--unload-on-kill", "-u"}
+"""Options of spawners without a value."""
+_LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
+"""Options of ``ros2 control load_controller`` with a value."""
 _FARTHEST = 1e6
 _WORLDS = (".world", ".sdf")
 
@@ -95,6 +101,26 @@ def resolved(space: str, name: str) -> str:
     if not name.startswith("/"):
         name = f"{space}/{name}"
     return limited("/".join(part for part in name.split("/") if part))
+
+
+def options_apart(words: list[str]) -> list[str]:
+    """Arguments of a spawner, with the value of an option such as ``--param-file=FILE`` apart."""
+    parts = (word.split("=", 1) if word.startswith("--") else [word] for word in words)
+    return [*itertools.chain(*parts)]
+
+
+def loaded_controller(words: list[str]) -> list[str]:
+    """The arguments of ``ros2 control load_controller`` that are no options: a controller, and
+    perhaps its file.
+    """
+    found = []
+    options = iter(words)
+    for word in options:
+        if word in _LOADING_OPTIONS:
+            next(options, None)
+        elif not word.startswith("-"):
+            found.append(word)
+    return found
 
 
 def manager_space(words: list[str], space: str) -> str:

@@ -19,9 +19,13 @@ from cartwheel.description.files.package_folders import (
 from cartwheel.description.launches.bridging import BRIDGES, RenamedTopic, renamed_topics
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.spawning import (
+    INACTIVE,
     MODEL_SPAWNERS,
+    SWITCHES,
     Spawn,
+    loaded_controller,
     manager_space,
+    options_apart,
     resolved,
     spawn_of,
     split,
@@ -43,9 +47,6 @@ _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
-_LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
-"""Options of ``ros2 control load_controller`` with a value."""
-_INACTIVE = ("--inactive", "--stopped", "--load-only")  # of a spawner that only loads controllers
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
 
@@ -326,28 +327,24 @@ class Facts:
 
     def _load(self, words: list[str]) -> None:
         """Adds the controller of ``ros2 control load_controller``, and its parameters."""
-        positional: list[str] = []
-        options = iter(words)
-        for word in options:
-            if word in _LOADING_OPTIONS:
-                next(options, None)
-            elif not word.startswith("-"):
-                positional.append(word)
+        words = options_apart(words)
+        stated = loaded_controller(words)
         space = manager_space(words, "")
-        self._spawn([] if "inactive" in words else positional[:1], space)
-        for each in positional[1:2]:
+        self._spawn([] if "inactive" in words else stated[:1], space)
+        for each in stated[1:2]:
             self.parameters(each, within=space)
 
     def _spawn(self, words: list[str], space: str) -> None:
+        words = options_apart(words)
         space = manager_space(words, space)
-        starts = not any(word in _INACTIVE or word == "load" for word in words)
+        starts = not any(word in INACTIVE or word == "load" for word in words)
         skip = False
         for index, word in enumerate(words):
             if skip:
                 skip = False
             elif word.startswith("-"):
                 # Options with a value, such as --controller-manager /controller_manager.
-                skip = word not in (*_INACTIVE, "--activate-as-group")
+                skip = word not in SWITCHES
                 if word in ("-p", "--param-file") and index + 1 < len(words):
                     self.parameters(words[index + 1], within=space)
             elif starts and word not in ("spawn", "start") and re.fullmatch(r"[\w/]+", word):
