@@ -38,18 +38,41 @@ def test_a_drive_of_a_robot_that_the_world_holds_is_reported(tmp_path, held, rep
         assert each.severity == "warning"
 
 
+SDF = """<sdf version="1.9"><model name="cart"><static>{static}</static>{held}
+  <link name="base"><pose>0 0 0.2 0 0 0</pose></link>
+  {wheels}{plugin}</model></sdf>"""
+WHEEL = """<link name="{0}"><pose>0 {1} 0.1 0 0 0</pose><collision name="c"><geometry><sphere>
+  <radius>0.1</radius></sphere></geometry></collision></link>
+  <joint name="{0}_joint" type="revolute">
+  <parent>base</parent><child>{0}</child><axis><xyz>0 1 0</xyz></axis></joint>"""
+
+
+def model(static="false", held=""):
+    return SDF.format(
+        static=static,
+        held=held,
+        wheels=WHEEL.format("left", 0.2) + WHEEL.format("right", -0.2),
+        plugin=CLASSIC.removeprefix("<gazebo>").removesuffix("</gazebo>"),
+    )
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize("name", ["cart.urdf", "cart.sdf"])
+def test_only_a_urdf_has_a_link_for_the_world(tmp_path, name):
+    path = tmp_path / name
+    held = '<joint name="hold" type="fixed"><parent>world</parent><child>base</child></joint>'
+    text = model(held=held)
+    if name.endswith(".urdf"):
+        held = WORLD + HOLD.format("fixed", "world", "base")
+        text = f'<robot name="cart">{BODY.format(more="")}{REAR}{held}{CLASSIC}</robot>'
+    path.write_text(text)
+    (found,) = [each for each in check(path).findings if each.code is BASE_FIXED]
+    assert ('the link "world"' in found.hint) == name.endswith(".urdf")
+
+
 @pytest.mark.parametrize("static", [True, False])
 def test_a_drive_of_a_static_model_is_reported(tmp_path, static):
-    wheel = """<link name="{0}"><pose>0 {1} 0.1 0 0 0</pose><collision name="c"><geometry><sphere>
-      <radius>0.1</radius></sphere></geometry></collision></link>
-      <joint name="{0}_joint" type="revolute">
-      <parent>base</parent><child>{0}</child><axis><xyz>0 1 0</xyz></axis></joint>"""
     path = tmp_path / "model.sdf"
-    path.write_text(
-        f"""<sdf version="1.9"><model name="cart"><static>{static}</static>
-        <link name="base"><pose>0 0 0.2 0 0 0</pose></link>
-        {wheel.format("left", 0.2)}{wheel.format("right", -0.2)}
-        {CLASSIC.removeprefix("<gazebo>").removesuffix("</gazebo>")}</model></sdf>"""
-    )
+    path.write_text(model(static=str(static)))
     found = [each for each in check(path).findings if each.code is BASE_FIXED]
     assert [each.values for each in found] == [{"plugin": "libgazebo_ros_diff_drive.so"}] * static

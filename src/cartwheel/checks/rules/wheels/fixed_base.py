@@ -29,7 +29,8 @@ def base_fixed(subject: Subject) -> Iterator[Diagnostic]:
             values = {"plugin": drive.tag.filename}
         else:
             why = f'joint "{holder.name}" fixes it to the world'
-            hint = f'Remove the joint and the link "{_WORLD}".'
+            link = "" if subject.in_sdf(holder.origin) else f' and the link "{_WORLD}"'
+            hint = f"Remove the joint{link}."
             values = {"plugin": drive.tag.filename, "joint": holder.name}
         yield robot_codes.BASE_FIXED.diagnostic(
             message=f'plugin "{drive.tag.filename}" cannot drive the robot, because {why}',
