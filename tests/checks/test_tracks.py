@@ -96,3 +96,12 @@ def test_a_light_root_that_nothing_holds_is_reported(bench, world, mass, found):
     findings = bench.find(BASE.format(world=world, mass=mass), "root-not-held")
     assert len(findings) == found
     assert all(each.values["joints"] == ("turn",) for each in findings)
+
+
+def test_tracks_that_are_wheels_need_joints_on_both_sides(bench):
+    text = vehicle(0.5).partition("<plugin")[0] + (
+        '<plugin name="v" filename="libWheelTrackedVehiclePlugin.so"><left_joint>left_joint'
+        "</left_joint></plugin></model></sdf>"
+    )
+    (finding,) = bench.find(text, "plugin-parameter-missing", "x.sdf")
+    assert finding.values["parameter"] == "right_joint"

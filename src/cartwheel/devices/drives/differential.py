@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -107,7 +108,11 @@ class DifferentialDrive(Drive):
         self._config = config
         self._yaw_rate = yaw_rate
         wheel_of = wheel_of or self._motor_wheel
-        self._wheels = [wheel_of(name) for pair in config.pairs for name in (pair.left, pair.right)]
+        # A wheel may be in several pairs if the sides have different numbers of wheels.
+        left, right = functools.cache(wheel_of), functools.cache(wheel_of)
+        self._wheels = [
+            wheel for pair in config.pairs for wheel in (left(pair.left), right(pair.right))
+        ]
         self._radii = [
             radius for pair in config.pairs for radius in (pair.left_radius, pair.right_radius)
         ]

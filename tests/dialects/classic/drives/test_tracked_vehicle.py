@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from tests.coded import raises
+from tests.coded import coded, raises
 
-from cartwheel.codes import devices
+from cartwheel.codes import devices, running
 from cartwheel.description import load_text
 from cartwheel.errors import PluginError, UnknownNameError
 
@@ -128,6 +128,13 @@ def test_wheels_turn_it_to_the_left(make):
 def test_wheels_of_other_shapes_have_half_their_longest_edge(make):
     made = Vehicle(make, wheeled(shape=f"<sphere><radius>{HEIGHT / 2}</radius>"))
     assert made.driven(0.4)[0] == pytest.approx(0.4, rel=0.01)
+
+
+def test_a_wheel_without_an_opposite_one_is_driven_once(make):
+    text = wheeled().replace("<right_joint>right1_j</right_joint>", "")
+    made = Vehicle(make, text)
+    assert made.driven(0.4)[0] == pytest.approx(0.4, rel=0.01)
+    assert not coded(made.world, running.JOINT_DRIVEN_TWICE)
 
 
 def test_a_slow_turn_is_none(make):

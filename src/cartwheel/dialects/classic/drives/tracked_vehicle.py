@@ -14,7 +14,7 @@ from cartwheel.devices.drives.track import TrackConfig
 from cartwheel.devices.drives.tracked_vehicle import TrackedVehicle, TrackedVehicleConfig
 from cartwheel.dialects.drive_tags import commands_only
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import SMALLEST, missing, tag
+from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import add_differential_drive, box_radius
 from cartwheel.geometry import IDENTITY, Vec3
 from cartwheel.world.entry import Grip
@@ -92,13 +92,11 @@ class SimpleTracksParameters(TracksParameters):
 class WheelTracksParameters(TracksParameters):
     left: tuple[str, ...] = tag(
         "left_joint",
-        default=(),
         role="left_wheel",
         doc="Joint of a wheel of the left track. Repeat the tag for each wheel.",
     )
     right: tuple[str, ...] = tag(
         "right_joint",
-        default=(),
         role="right_wheel",
         doc="Joint of a wheel of the right track. Repeat the tag for each wheel.",
     )
@@ -205,9 +203,6 @@ class WheelTrackedVehicle(_Tracks[WheelTracksParameters]):
     def configure(self) -> None:
         super().configure()
         config = self.config
-        for name, joints in (("left_joint", config.left), ("right_joint", config.right)):
-            if not joints:
-                raise missing("plugin", name, self.tag.origin)
         left, right = ([each.strip() for each in side] for side in (config.left, config.right))
         separation = config.separation / config.efficiency
         linear, angular = self._limits()
