@@ -1009,7 +1009,8 @@ def test_the_velocities_of_a_joint_with_close_limits_end_within_them(tmp_path):
 
 
 def test_plugins_that_are_not_there_are_listed_and_cost_nothing_else(tried):
-    extra = '<gazebo><plugin name="x" filename="libmy_own_thing.so"/></gazebo>'
+    names = ("libmy_own_thing.so", "libKeysToCmdVelPlugin.so")  # the second has no effect
+    extra = "".join(f'<gazebo><plugin name="x" filename="{name}"/></gazebo>' for name in names)
     verdict = tried(cart(0.1), extra)
     assert verdict.missing == ("my_own_thing",)
     assert verdict.good
@@ -1239,22 +1240,30 @@ def test_thrusters_push_a_boat_in_water(tried, more):
     assert found.spins[1].measured > 0.05
 
 
+HULL = (
+    '<link name="hull"><inertial><mass value="6"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+)
+VALVE = (
+    '<gazebo><plugin name="v" filename="gz-sim-spacecraft-thruster-model-system">'
+    "<link_name>hull</link_name><actuator_number>2</actuator_number><max_thrust>3</max_thrust>"
+    "<duty_cycle_frequency>10</duty_cycle_frequency><sub_topic>duty</sub_topic></plugin></gazebo>"
+)
+
+
 def test_a_spacecraft_is_tested_without_gravity(tried):
-    plugin = (
-        '<gazebo><plugin name="v" filename="gz-sim-spacecraft-thruster-model-system">'
-        "<link_name>hull</link_name><actuator_number>2</actuator_number><max_thrust>3</max_thrust>"
-        "<duty_cycle_frequency>10</duty_cycle_frequency><sub_topic>duty</sub_topic></plugin></gazebo>"
-    )
-    hull = (
-        '<link name="hull"><inertial><mass value="6"/>'
-        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
-    )
-    verdict = tried(hull, plugin)
+    verdict = tried(HULL, VALVE)
     assert verdict.good, verdict.faults
     assert verdict.stand.state == "floats"
     (spin,) = verdict.spins
     assert (spin.joint, spin.commanded) == ("hull", 3.0)
     assert spin.measured == pytest.approx(3.0 / 6 * 0.1, rel=0.1)
+
+
+def test_a_valve_with_a_very_large_number_is_not_commanded(tried):
+    verdict = tried(HULL, VALVE.replace(">2<", ">100000000<"))
+    assert verdict.stand.state == "floats"
+    assert not verdict.spins and not verdict.faults
 
 
 def test_a_thruster_without_its_joint_is_a_fault_of_the_file(tried):

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from cartwheel.api import Model, World
+from cartwheel.corpus.flights import MOST_ACTUATORS
 from cartwheel.corpus.verdict import Spin
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named
@@ -51,7 +52,8 @@ def bursts(world: World, model: Model, robot: RobotDescription) -> Iterator[Spin
         except PluginError:
             continue
         topic = valve_topic(model.name, model.namespace, config)
-        if topic not in live or robot.link(config.link.strip()) is None:
+        is_commanded = topic in live and config.number < MOST_ACTUATORS
+        if not is_commanded or robot.link(config.link.strip()) is None:
             continue
         world.reset()
         world.publish(topic, {"normalized": [0.0] * config.number + [1.0] + [0.0] * _OTHERS})

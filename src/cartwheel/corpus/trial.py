@@ -32,7 +32,7 @@ from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.ros_control.selection import selection, with_published_control
-from cartwheel.dialects.world_plugins import BUILT_IN
+from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
 from cartwheel.geometry import Pose
 from cartwheel.graph import Subscription
@@ -190,7 +190,7 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         mass=robot.mass,
         links=len(robot.links),
         plugins=tuple(name for name in names if name in known),
-        missing=tuple(name for name in names if name not in known),
+        missing=tuple(name for name in names if name not in known | WITHOUT_EFFECT),
         missing_meshes=sum(
             each.values.get("left_out") in ("visual", "collision") and each.severity == "error"
             for each in robot.diagnostics
