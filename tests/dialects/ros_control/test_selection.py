@@ -12,8 +12,9 @@ from cartwheel.codes.devices import (
     CONTROLLERS_NOT_FOUND,
 )
 from cartwheel.corpus import try_robot
-from cartwheel.description import load_robot
+from cartwheel.description import load_robot, load_world
 from cartwheel.description.launches import launches_near
+from cartwheel.dialects.ros_control import selection
 from cartwheel.dialects.ros_control.selection import with_published_control
 
 SDF = """<sdf version="1.9"><model name="arm">
@@ -155,6 +156,19 @@ def test_the_urdf_of_a_model_in_a_world_lists_the_joints_of_its_controllers(mode
         world.publish("/arm_controller/commands", data=[0.5])
         world.run(1.0)
         assert world.model("arm").joint("beam_joint") == pytest.approx(0.5, abs=1e-3)
+
+
+def test_launch_files_are_read_once_for_all_models_of_a_world(model, monkeypatch):
+    path = model(ROS2, worlds__arm_dot_urdf=robot(beam("beam", "world") + SYSTEM, "")).parents[2]
+    world_file = path / "worlds/hall.world"
+    one = in_world(ROS2.format(file=path / "config/arm.yaml"))
+    held = one.partition('name="hall">')[2].removesuffix("</world></sdf>")
+    world_file.write_text(WORLD.format(held + held.replace("name='arm'", "name='second'")))
+    read = []
+    monkeypatch.setattr(selection, "launches_near", lambda *given: read.append(given) or ())
+    found = selection.world_with_published_control(load_world(world_file))
+    assert len(read) == 1
+    assert [bool(each.ros2_control) for each in found.models] == [True, False]
 
 
 @pytest.mark.parametrize("place", ["$(find arm)", "/home/them/ws/src/arm"])

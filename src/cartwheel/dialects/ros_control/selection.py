@@ -8,6 +8,7 @@ model, without these elements.
 from __future__ import annotations
 
 import contextlib
+import functools
 import itertools
 import os
 import re
@@ -244,7 +245,18 @@ def world_with_published_control(
     world: WorldDescription, package_path: Sequence[Path] = ()
 ) -> WorldDescription:
     """A world whose models have the hardware of their URDF; see `with_published_control`."""
-    models = tuple(with_published_control(each, None, package_path) for each in world.models)
+
+    @functools.cache
+    def near(folder: Path) -> Sequence[LaunchUse]:
+        return launches_near(folder, package_path)
+
+    def launches(robot: RobotDescription) -> Sequence[LaunchUse]:
+        folder = root_of(Path(robot.origin.file)) if _lacks_hardware(robot) else None
+        return () if folder is None else near(folder)
+
+    models = tuple(
+        with_published_control(each, launches(each), package_path) for each in world.models
+    )
     if all(one is other for one, other in zip(models, world.models, strict=True)):
         return world
     return replace(world, models=models)
