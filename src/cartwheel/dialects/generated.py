@@ -72,6 +72,7 @@ PLUGINS = {
     "gazebo_ros_range": "classic.sensors.range",
     "gazebo_ros_ray_sensor": "classic.sensors.ray_sensor",
     "gazebo_ros_skid_steer_drive": "classic.drives.skid_steer",
+    "gazebo_ros_tracked_vehicle_interface": "classic.drives.tracked_vehicle_interface",
     "gazebo_ros_tricycle_drive": "classic.drives.tricycle",
     "gazebo_ros_triggered_camera": "classic.sensors.camera",
     "gazebo_ros_triggered_multicamera": "classic.sensors.camera",

@@ -230,6 +230,11 @@ class DifferentialDrive(Drive):
             turn = self._yaw_rate() * seconds
         self.reckoning.go(forward, turn, seconds)
 
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Commanded rim speeds of the first pair's left and right wheel, m/s."""
+        return self._speeds[0], self._speeds[1]
+
     def motion(self) -> Motion:
         return planar_motion(self._base) if self._is_true else self.reckoning.motion()
 

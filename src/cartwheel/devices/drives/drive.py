@@ -137,9 +137,13 @@ class Drive(Component):
             self._odometry.publish(time_ns, *self.motion())
 
     def _on_command(self, message: Any) -> None:
-        self._received_ns = self.part.time_ns
         linear, angular = message.linear, message.angular
-        self.command(float(linear.x), float(linear.y), float(angular.z))
+        self.receive(float(linear.x), float(linear.y), float(angular.z))
+
+    def receive(self, forward: float, sideways: float, turn: float) -> None:
+        """Takes a command that has just arrived; see `command`."""
+        self._received_ns = self.part.time_ns
+        self.command(forward, sideways, turn)
         if self.enabled and self._updated_ns == self._received_ns and self.part.served:
             self.respond()
 

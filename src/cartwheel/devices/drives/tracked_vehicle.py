@@ -190,5 +190,10 @@ class TrackedVehicle(Drive):
         x, y, z = (np.array(place) + radius * np.array(rotate(turned, (0.0, 1.0, 0.0)))).tolist()
         return x, y, z
 
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Commanded speeds of the left and right tracks, m/s."""
+        return self._speeds.left, self._speeds.right
+
     def motion(self) -> Motion:
         return self._reckoning.motion()
