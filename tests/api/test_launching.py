@@ -148,6 +148,28 @@ def test_topics_have_the_names_that_the_bridge_of_a_launch_file_gives(
     assert "/robot/odom" in topics and "/model/gz/odometry" not in topics
 
 
+@pytest.mark.parametrize(
+    "bridge",
+    [
+        '<ros_gz_bridge bridge_name="b" config_file="CONFIG"/>',
+        '<node pkg="ros_gz_bridge" exec="parameter_bridge">'
+        '<param name="config_file" value="CONFIG"/></node>',
+    ],
+)
+def test_the_bridge_of_a_launch_file_in_xml(package: Path, bridge: str) -> None:
+    (package / "config/bridge.yaml").write_text(BRIDGE)
+    (package / "urdf/gz.urdf").write_text(GZ)
+    share = "$(find-pkg-share carts)"
+    file = package / "launch/gz.launch.xml"
+    file.write_text(
+        f"""<launch><node pkg="ros_gz_sim" exec="create" args="-file {share}/urdf/gz.urdf"/>
+        {bridge.replace("CONFIG", f"{share}/config/bridge.yaml")}</launch>"""
+    )
+    with cw.launch(file) as world:
+        topics = {each.name for each in world.session.graph.topics()}
+    assert "/robot/odom" in topics and "/model/gz/odometry" not in topics
+
+
 def test_another_world_and_arguments(package: Path) -> None:
     file = package / "launch/two.launch"
     with cw.launch(file, world="empty") as world:

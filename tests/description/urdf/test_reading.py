@@ -579,3 +579,21 @@ def test_a_shape_without_geometry_is_left_out(kind, content):
     assert (said.code, said.severity) == (tags.TAG_MISSING, "error")
     assert said.values["left_out"] == kind
     assert said.origin.line == 2
+
+
+@pytest.mark.parametrize(
+    ("shapes", "first"),
+    [
+        ('<sphere radius="0.1"/>\n<box size="1 1 1"/>', m.Sphere),
+        ('<box size="1 1 1"/>\n<cylinder radius="0.1" length="-0.2"/>', m.Box),
+        ('<box size="1 1 1"/>\n<box size="2 2 2"/>', m.Box),
+    ],
+)
+def test_of_several_shapes_the_first_is_used(shapes, first):
+    content = f"{BODY}<collision><geometry>{shapes}</geometry></collision>"
+    robot = load_text(urdf(link("a", content)))
+    (collision,) = robot.links[0].collisions
+    assert isinstance(collision.shape, first)
+    assert not isinstance(collision.shape, m.Box) or collision.shape.size == (1.0, 1.0, 1.0)
+    (found,) = (each for each in robot.diagnostics if each.code is tags.TAG_REPEATED)
+    assert found.origin.line == 3

@@ -134,3 +134,18 @@ def test_a_file_that_is_empty_or_missing(tmp_path):
     assert caught.value.code is devices.BRIDGE_FILE_INVALID
     file.write_text("---\n")
     assert read_bridge(file) == []
+
+
+def test_the_axis_of_a_joint_is_left_out_as_in_the_topic_of_its_controller(bridged):
+    joint = """<plugin filename="gz-sim-joint-position-controller-system" name="p">
+      <joint_name>left_joint</joint_name></plugin>"""
+    world = bridged(
+        """
+- ros_topic_name: /wheel/target
+  gz_topic_name: /model/cart/joint/left_joint/0/cmd_pos
+  ros_type_name: std_msgs/msg/Float64
+""",
+        cart_sdf({"left": (0, 0.2), "right": (0, -0.2)}, joint),
+    )
+    assert "/wheel/target" in topics(world)
+    assert reported(world) == []

@@ -84,6 +84,8 @@ def test_a_position_by_velocity_goes_no_faster_than_commanded(make):
         ("", VELOCITY),
         ("<topic>spin</topic>", "/spin"),
         ("<sub_topic>spin</sub_topic>", "/model/arm/spin"),
+        ("<topic>/model/arm/joint/turn/0/cmd_vel</topic>", VELOCITY),
+        ("<topic>/arms/2/spin</topic>", "/arms/_2/spin"),
     ],
 )
 def test_a_velocity_is_held(make, tags, topic):

@@ -12,6 +12,7 @@ from typing import Any
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.expressions import Function
+from cartwheel.description.launches.bridging import BRIDGES
 from cartwheel.description.launches.effort import UNKNOWN, limited
 from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.spawning import resolved, split
@@ -78,10 +79,13 @@ class _Reader:
         elif tag == "rosparam":
             if node.attributes.get("command", "load") == "load" and "file" in node.attributes:
                 facts.parameters(self._value(node, "file"), self._value(node, "ns"))
+        elif tag == "ros_gz_bridge":
+            facts.bridge(self._value(node, "config_file"))
         elif tag == "node":
             kind = "exec" if "exec" in node.attributes else "type"
+            package = self._value(node, "pkg")
             facts.node(
-                self._value(node, "pkg"),
+                package,
                 self._value(node, kind),
                 split(self._value(node, "args")),
                 self._space(node),
@@ -93,6 +97,10 @@ class _Reader:
             )
             with self._within(node):
                 self.group(node)
+            for child in node.children if package in BRIDGES else ():
+                named = child.attributes.get("name") if child.tag == "param" else None
+                if named == "config_file" and self._holds(child):
+                    facts.bridge(self._value(child, "value"))
 
     @contextlib.contextmanager
     def _within(self, node: Node) -> Iterator[None]:

@@ -99,13 +99,24 @@ def _visual(node: Node, default: str, ctx: UrdfContext) -> Visual | None:
 def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:
     """The shape of a visual or collision; None if it is skipped."""
     geometry = owner.child("geometry")
-    for tag in SHAPES:
-        node = geometry.child(tag) if geometry is not None else None
-        if node is None:
-            continue
-        if tag == "mesh":
-            return _mesh(node, kind, link, ctx)
-        return _primitive(node, kind, link, ctx)
+    shapes: list[Node] = []
+    if geometry is not None:
+        shapes = [each for each in geometry.children if each.tag in SHAPES]
+        for tag in SHAPES:
+            geometry.all(tag)
+    for other in shapes[1:]:
+        other.mark()
+        ctx.report(
+            tags.TAG_REPEATED.diagnostic(
+                f"only the first shape of a <geometry> is used, so <{other.tag}> after "
+                f"<{shapes[0].tag}> is ignored",
+                origin=other.origin,
+                values={"tag": other.tag, "parent": "geometry", "link": link},
+            )
+        )
+    if shapes:
+        read = _mesh if shapes[0].tag == "mesh" else _primitive
+        return read(shapes[0], kind, link, ctx)
     if geometry is not None and geometry.children:
         wrong = geometry.children[0]
         raise wrong.fail(

@@ -13,9 +13,16 @@ from cartwheel.graph import resolve_name
 from cartwheel.graph.renaming import Bridged
 from cartwheel.messages import type_name
 
+_AXIS = re.compile(r"(/joint/[^/]+)/\d+(?=/)")
+"""The axis in a topic of a joint, such as ``/model/arm/joint/elbow/0/cmd_pos``."""
+
 
 def gz_topic(name: str) -> str:
-    """Converts a gz-sim topic name, which can contain dashes and leading digits, to ROS."""
+    """Converts a gz-sim topic name, which can contain dashes and leading digits, to ROS.
+
+    The axis of a joint is left out.
+    """
+    name = _AXIS.sub(r"\1", name)
     parts = [re.sub(r"\W", "_", part, flags=re.ASCII) for part in name.strip("/").split("/")]
     return "".join(f"/_{part}" if part[:1].isdigit() else f"/{part}" for part in parts)
 

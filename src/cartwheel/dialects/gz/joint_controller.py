@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -195,8 +194,7 @@ def _topic(plugin: Plugin[Any], joint: str, default: str) -> str:
     if not topic and actuator_of(config) is not None:
         topic = "actuators"
     topic = topic or f"/model/{plugin.part.name}/joint/{joint}/{default}"
-    # Gazebo's topic contains the axis, as in /0/cmd_pos, which is not a valid name in ROS.
-    return gz_name(plugin, re.sub(r"/\d+(?=/)", "", topic), "")
+    return gz_name(plugin, topic, "")
 
 
 def _gains(config: ServoParameters) -> PidGains:
