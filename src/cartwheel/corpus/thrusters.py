@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import TypeVar
 
 from cartwheel.api import Model, World
 from cartwheel.corpus.flights import MOST_ACTUATORS
@@ -16,10 +17,12 @@ from cartwheel.dialects.gz.forces.spacecraft_thruster import (
     SpacecraftThrusterSystem,
     valve_topic,
 )
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import read
 from cartwheel.errors import PluginError
 from cartwheel.geometry import rotate
 
+C = TypeVar("C")
 _ACCELERATION = 0.5
 """Acceleration of the robot's own mass by the commanded thrust, m/s²."""
 _SECONDS = 0.1
@@ -43,14 +46,8 @@ def bursts(world: World, model: Model, robot: RobotDescription) -> Iterator[Spin
 
     The velocity is that of the nozzle's link along the thrust.
     """
-    live = {info.name for info in world.graph.topics() if info.subscribers}
-    for tag in robot.plugins:
-        if plugin_named(tag.filename) is not SpacecraftThrusterSystem:
-            continue
-        try:
-            config, _ = read(SpacecraftThrusterParameters, tag.element)
-        except PluginError:
-            continue
+    live = _live(world)
+    for config in _stated(robot, SpacecraftThrusterSystem, SpacecraftThrusterParameters):
         topic = valve_topic(model.name, model.namespace, config)
         is_commanded = topic in live and config.number < MOST_ACTUATORS
         if not is_commanded or robot.link(config.link.strip()) is None:
@@ -102,18 +99,28 @@ def _thrusters(
     world: World, model: Model, robot: RobotDescription
 ) -> Iterator[tuple[str, Joint, ThrusterParameters]]:
     """The topic, the joint and the tags of each thruster that was loaded."""
-    live = {info.name for info in world.graph.topics() if info.subscribers}
-    for tag in robot.plugins:
-        if plugin_named(tag.filename) is not ThrusterSystem:
-            continue
-        try:
-            config, _ = read(ThrusterParameters, tag.element)
-        except PluginError:
-            continue
+    live = _live(world)
+    for config in _stated(robot, ThrusterSystem, ThrusterParameters):
         joint = robot.joint(config.joint.strip())
         topic, _, _ = topics(model.name, model.namespace, config)
         if joint is not None and topic in live:
             yield topic, joint, config
+
+
+def _live(world: World) -> set[str]:
+    """The topics that have subscribers."""
+    return {info.name for info in world.graph.topics() if info.subscribers}
+
+
+def _stated(robot: RobotDescription, plugin: type[Plugin[C]], tags: type[C]) -> Iterator[C]:
+    """The valid tags of each plugin of a class."""
+    for tag in robot.plugins:
+        if plugin_named(tag.filename) is plugin:
+            try:
+                config, _ = read(tags, tag.element)
+            except PluginError:
+                continue
+            yield config
 
 
 def _command(config: ThrusterParameters, mass: float) -> float:

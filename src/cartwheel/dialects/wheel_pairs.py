@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from cartwheel.codes import devices, robot
 from cartwheel.description.kinematics import link_poses
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.model import Link, RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.devices.drives.differential import (
     DifferentialDrive,
@@ -69,6 +69,18 @@ def wheel_pairs(
     return tuple(pairs)
 
 
+def wheel_link(plugin: Plugin[Any], joint: str) -> Link:
+    """Returns the link that a joint turns.
+
+    Raises:
+        UnknownNameError: The joint does not exist.
+    """
+    plugin.part.joint(joint, origin=plugin.origin)
+    description = plugin.part.description
+    described: Any = description.joint(joint)
+    return cast("Link", description.link(described.child))
+
+
 def box_radius(plugin: Plugin[Any], joint: str) -> float:
     """Returns half the longest edge of the bounding box of a wheel's collisions, m.
 
@@ -76,11 +88,8 @@ def box_radius(plugin: Plugin[Any], joint: str) -> float:
         UnknownNameError: The joint does not exist.
         PluginError: The wheel has no collision.
     """
-    plugin.part.joint(joint, origin=plugin.origin)
-    description = plugin.part.description
-    described: Any = description.joint(joint)
-    link: Any = description.link(described.child)
-    pose = link_poses(description, {})[link.name]
+    link = wheel_link(plugin, joint)
+    pose = link_poses(plugin.part.description, {})[link.name]
     solids = (solid_of(each, link.name) for each in link.collisions)
     box = bounds([solid.placed(pose) for solid in solids if solid is not None])
     if box is None:

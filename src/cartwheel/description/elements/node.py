@@ -108,10 +108,10 @@ class Node:
             )
         return found
 
-    def all(self, tag: str) -> list[Node]:
-        """All children with this tag."""
-        self._asked_children.add(tag)
-        found = [child for child in self.children if child.tag == tag]
+    def all(self, *tags: str) -> list[Node]:
+        """All children with this tag, or with one of these tags."""
+        self._asked_children.update(tags)
+        found = [child for child in self.children if child.tag in tags]
         for child in found:
             child._read = True
         return found

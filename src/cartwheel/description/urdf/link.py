@@ -99,11 +99,7 @@ def _visual(node: Node, default: str, ctx: UrdfContext) -> Visual | None:
 def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:
     """The shape of a visual or collision; None if it is skipped."""
     geometry = owner.child("geometry")
-    shapes: list[Node] = []
-    if geometry is not None:
-        shapes = [each for each in geometry.children if each.tag in SHAPES]
-        for tag in SHAPES:
-            geometry.all(tag)
+    shapes = [] if geometry is None else geometry.all(*SHAPES)
     for other in shapes[1:]:
         other.mark()
         ctx.report(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from typing import ClassVar, TypeVar
 
 from cartwheel.description.model import Cylinder
 from cartwheel.devices.drives.differential import DifferentialDriveConfig, WheelPair
@@ -15,7 +15,7 @@ from cartwheel.devices.drives.tracked_vehicle import TrackedVehicle, TrackedVehi
 from cartwheel.dialects.drive_tags import commands_only
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
-from cartwheel.dialects.wheel_pairs import add_differential_drive, box_radius
+from cartwheel.dialects.wheel_pairs import add_differential_drive, box_radius, wheel_link
 from cartwheel.geometry import IDENTITY, Vec3
 from cartwheel.world.entry import Grip
 
@@ -241,12 +241,9 @@ class WheelTrackedVehicle(_Tracks[WheelTracksParameters]):
             UnknownNameError: The joint does not exist.
             PluginError: The wheel has no collision.
         """
-        self.part.joint(joint, origin=self.origin)
-        description = self.part.description
-        described: Any = description.joint(joint)
-        link: Any = description.link(described.child)
-        if len(link.collisions) == 1 and isinstance(link.collisions[0].shape, Cylinder):
-            return float(link.collisions[0].shape.radius)
+        collisions = wheel_link(self, joint).collisions
+        if len(collisions) == 1 and isinstance(collisions[0].shape, Cylinder):
+            return collisions[0].shape.radius
         return box_radius(self, joint)
 
 
