@@ -10,6 +10,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.model import Element
 from cartwheel.dialects.ros_control.suggestion import files_for
 from cartwheel.errors import DescriptionError, Diagnostic
@@ -39,7 +40,7 @@ def controller_files_of(
             joints = [joint.name for joint in robot.joints.values() if joint.type != "fixed"]
             found += [
                 (robot, ControlFile(path=path, named=False))
-                for path in files_for(file, joints)
+                for path in files_for(file, joints, within=repository_of(file))
                 if _belongs(path, file)
             ]
     return found

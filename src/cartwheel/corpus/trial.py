@@ -25,7 +25,14 @@ from cartwheel.corpus.thrusters import bursts, has_thrusters, is_in_space, thrus
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.corpus.worlds import load_from_world
 from cartwheel.description import load_robot
-from cartwheel.description.launches import LaunchUse, chosen, launches_near, root_of
+from cartwheel.description.launches import (
+    LaunchUse,
+    chosen,
+    launches_near,
+    own_folder,
+    own_launches,
+    root_of,
+)
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -60,6 +67,7 @@ def try_robot(
     standing: float = STANDING,
     launches: Sequence[LaunchUse] | None = None,
     model: str = "",
+    folder: Path | None = None,
 ) -> Verdict:
     """Tests a description with the arguments and controllers that its launch files name.
 
@@ -74,14 +82,18 @@ def try_robot(
         launches: Contents of launch files. None: the launch files in the robot's package and in the
             packages beside it are read.
         model: The name of the model to test, if the file is a world.
+        folder: The folder of robots that contains the file. Files outside of it that the robot
+            does not name are not used, nor those of other repositories in it.
 
     Returns:
         The results, including errors in the description.
     """
     verdict = Verdict(file=file, model=model)
     if launches is None:
-        folder = root_of(file)
-        launches = launches_near(folder, package_path) if folder is not None else ()
+        near = root_of(file)
+        launches = launches_near(near, package_path) if near is not None else ()
+    own = own_folder(file, folder)
+    launches = own_launches(file, launches, folder)
     use = chosen(file, launches)
     verdict = replace(verdict, launch=use)
     arguments = {**(use.arguments if use is not None else {}), **(arguments or {})}
@@ -100,7 +112,7 @@ def try_robot(
     verdict = _described(verdict, robot)
     spawned: tuple[str, ...] = ()
     if controllers is None:
-        selected = selection(robot, use, launches)
+        selected = selection(robot, use, launches, within=own)
         controllers, spawned = selected.files, selected.names
         verdict = replace(verdict, observed=selected.problems)
     try:

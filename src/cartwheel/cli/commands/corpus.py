@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from cartwheel.cli.console import note, paint, say, table
 from cartwheel.codes.command import INTERNAL_FAULT, NO_ROBOTS
@@ -31,6 +31,17 @@ _HEAD = (
 )  # fmt: skip
 
 
+class _Robot(NamedTuple):
+    """What is tested."""
+
+    file: Path
+    model: str
+    """The name of the model in a world; otherwise empty."""
+    launches: Sequence[LaunchUse] | None
+    folder: Path | None
+    """The folder that was searched; None for a file."""
+
+
 def corpus(
     folders: Sequence[Path], package_path: Sequence[Path], *, json: bool, standing: float
 ) -> int:
@@ -47,15 +58,16 @@ def corpus(
     """
     surveys = [_survey(folder, package_path) for folder in folders]
     robots = [
-        (file, model, launches)
-        for found, launches in surveys
+        _Robot(file, model, launches, folder if folder.is_dir() else None)
+        for folder, (found, launches) in zip(folders, surveys, strict=True)
         for file, model in (*((file, "") for file in found.robots), *found.in_worlds)
     ]
     skipped = [each for found, _ in surveys for each in found.skipped]
     verdicts = []
-    for number, (file, model, launches) in enumerate(robots, start=1):
-        note(paint(f"{number} of {len(robots)}: {_with_model(shown_path(file), model)}", "dim"))
-        verdicts.append(_tried(file, model, package_path, standing, launches))
+    for number, robot in enumerate(robots, start=1):
+        name = _with_model(shown_path(robot.file), robot.model)
+        note(paint(f"{number} of {len(robots)}: {name}", "dim"))
+        verdicts.append(_tried(robot, package_path, standing))
     if json:
         result = {
             "schema": SCHEMA,
@@ -175,22 +187,21 @@ def _counted(skipped: Sequence[tuple[Path, Kind]]) -> str:
     return ", ".join(f"{count} {_KINDS[kind]}" for kind, count in sorted(counts.items()))
 
 
-def _tried(
-    file: Path,
-    model: str,
-    package_path: Sequence[Path],
-    standing: float,
-    launches: Sequence[LaunchUse] | None,
-) -> Verdict:
+def _tried(robot: _Robot, package_path: Sequence[Path], standing: float) -> Verdict:
     try:
         return try_robot(
-            file, package_path=package_path, standing=standing, launches=launches, model=model
+            robot.file,
+            package_path=package_path,
+            standing=standing,
+            launches=robot.launches,
+            model=robot.model,
+            folder=robot.folder,
         )
     except Exception as error:  # noqa: BLE001 - the other robots are tested anyway
         message = f"internal error: {error!r}"
         reason = INTERNAL_FAULT.diagnostic(message, values={"cause": type(error).__name__})
         return replace(
-            Verdict(file=file, model=model),
+            Verdict(file=robot.file, model=robot.model),
             error=message,
             faults=(Fault(test="load", reason=reason),),
         )

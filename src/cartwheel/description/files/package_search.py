@@ -23,15 +23,12 @@ from cartwheel.description.files.package_folders import (
     stand_ins,
 )
 from cartwheel.description.files.readable_files import with_targets
+from cartwheel.description.files.repositories import MARKERS
 
 _ROS1 = "ROS_PACKAGE_PATH"
 _PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
 RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
 _MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
-
-_OF_REPOSITORIES = (".git", ".gitignore", ".gitmodules", ".gitattributes", ".github")
-"""Entries of the root of a repository. An archive that was downloaded contains no ``.git``."""
-
 
 _FRESH = 1.0
 """Time for which the list of packages in a folder is reused, s. Descriptions are read faster."""
@@ -198,7 +195,7 @@ class PackageSearch:
         """The folders that ROS searches recursively for packages."""
         yield from self.package_path
         for parent in self._ancestors():
-            if parent.name == "src" or any((parent / each).exists() for each in _OF_REPOSITORIES):
+            if parent.name == "src" or any((parent / each).exists() for each in MARKERS):
                 yield parent
             elif (parent / "src").is_dir():
                 yield parent / "src"

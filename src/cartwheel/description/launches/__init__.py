@@ -4,6 +4,8 @@ from cartwheel.description.launches.search import (
     chosen,
     controllers_for,
     launches_near,
+    own_folder,
+    own_launches,
     root_of,
     starters,
 )
@@ -23,6 +25,8 @@ __all__ = [
     "controllers_for",
     "is_launch_file",
     "launches_near",
+    "own_folder",
+    "own_launches",
     "read_launch",
     "root_of",
     "starters",

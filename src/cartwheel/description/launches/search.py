@@ -11,6 +11,7 @@ from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.python_launch import read_python
@@ -136,6 +137,48 @@ def root_of(description: Path) -> Path | None:
             ]
             return folder.parent if beside else folder
     return None
+
+
+def own_folder(description: Path, within: Path | None = None) -> Path:
+    """The folder with the files of a description's author, in which unnamed files may be meant.
+
+    It is the repository, or, if this is unknown, the folder of `root_of`, or that of the file.
+
+    Args:
+        description: The description.
+        within: The folder that the user gave. If it contains the package, the result is in it.
+    """
+    repository = repository_of(description, within)
+    found = repository or root_of(description) or description.absolute().parent
+    home = package_above(description.absolute().parent)
+    if within is None or home is None or not home.is_relative_to(within.absolute()):
+        return found
+    return found if found.is_relative_to(within.absolute()) else within.absolute()
+
+
+def own_launches(
+    description: Path, uses: Iterable[LaunchUse], within: Path | None = None
+) -> list[LaunchUse]:
+    """The launch files of a description's author.
+
+    They are in the same repository. If this is unknown, they are in none, and those that name no
+    description are in `own_folder`.
+
+    Args:
+        description: The description.
+        uses: Contents of launch files.
+        within: The folder that the user gave.
+    """
+    repository = repository_of(description, within)
+    own = own_folder(description, within)
+    if repository is not None:
+        return [each for each in uses if each.file.absolute().is_relative_to(own)]
+    return [
+        each
+        for each in uses
+        if (each.description is not None or each.file.absolute().is_relative_to(own))
+        and repository_of(each.file, within) is None
+    ]
 
 
 def chosen(description: Path, uses: Iterable[LaunchUse]) -> LaunchUse | None:

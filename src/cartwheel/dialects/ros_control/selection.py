@@ -100,7 +100,11 @@ def _starter(file: Path, use: LaunchUse | None, launches: Sequence[LaunchUse]) -
 
 
 def selection(
-    robot: RobotDescription, use: LaunchUse | None, launches: Sequence[LaunchUse]
+    robot: RobotDescription,
+    use: LaunchUse | None,
+    launches: Sequence[LaunchUse],
+    *,
+    within: Path | None = None,
 ) -> Selection:
     """As `selection_near`, with launch files that have been read.
 
@@ -110,13 +114,14 @@ def selection(
         robot: The robot.
         use: The launch file that starts the robot; None if there is none.
         launches: All launch files near the robot.
+        within: A folder; files outside of it that no launch file names are not used.
     """
     starter = controllers_for(Path(robot.origin.file), use, launches)
     named = suggested(robot, among=starter.controllers) if starter is not None else []
     if starter is not use and not commanding(robot, named):
         # The launch file of another part only publishes the states of all joints.
         starter, named = None, []
-    near = [] if named else suggested(robot)
+    near = [] if named else suggested(robot, within=within)
     if starter is None and (use is None or not use.spawned) and not near:
         for each in starters(Path(robot.origin.file), launches)[:_MOST]:
             found = suggested(robot, among=each.controllers)
@@ -130,7 +135,8 @@ def selection(
         own = _starter(Path(robot.origin.file), use, launches)
         names = () if own is None else own.spawned
     unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
-    reported = _undefined(robot, starter or _starter(Path(robot.origin.file), use, launches))
+    starting = starter or _starter(Path(robot.origin.file), use, launches)
+    reported = _undefined(robot, starting, within)
     problems = (*unreadable, *reported)
     return Selection(files=files, names=names, problems=problems)
 
@@ -151,12 +157,14 @@ def _unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnos
                 yield replace(found, values={**found.values, "controllers": held})
 
 
-def _undefined(robot: RobotDescription, starter: LaunchUse | None) -> Iterator[Diagnostic]:
+def _undefined(
+    robot: RobotDescription, starter: LaunchUse | None, within: Path | None = None
+) -> Iterator[Diagnostic]:
     """Controllers that a launch file starts, but that no file near it or the robot defines."""
-    folder = root_of(Path(robot.origin.file))
+    folder = within or root_of(Path(robot.origin.file))
     if starter is None or not starter.spawned or folder is None or not is_controlled(robot):
         return
-    roots = dict.fromkeys((folder, root_of(starter.file) or folder))
+    roots = dict.fromkeys((folder, within or root_of(starter.file) or folder))
     searched = [_definitions(root) for root in roots]
     if not all(searched):
         return

@@ -41,7 +41,9 @@ _MOST = 400
 """Maximum number of files to read."""
 
 
-def suggested(robot: RobotDescription, among: Sequence[Path] | None = None) -> list[Path]:
+def suggested(
+    robot: RobotDescription, among: Sequence[Path] | None = None, *, within: Path | None = None
+) -> list[Path]:
     """Returns the controller files near a robot whose controller manager has none.
 
     Returns nothing if the manager's tag contains an existing file. Files with controllers for
@@ -51,6 +53,7 @@ def suggested(robot: RobotDescription, among: Sequence[Path] | None = None) -> l
         robot: The robot.
         among: Files to choose from, such as those that a launch file loads; None: all files near
             the robot.
+        within: A folder; files near the robot are used only if they are in it.
     """
     driven = {
         joint
@@ -69,7 +72,7 @@ def suggested(robot: RobotDescription, among: Sequence[Path] | None = None) -> l
     ros2 = _manager(managers[0]) != ROS_CONTROL
     if among is not None:
         return with_controllers(among, joints, ros2=ros2)
-    return files_for(Path(robot.origin.file), joints, ros2=ros2)
+    return files_for(Path(robot.origin.file), joints, ros2=ros2, within=within)
 
 
 def commanding(robot: RobotDescription, among: Sequence[Path]) -> bool:
@@ -89,7 +92,9 @@ def lacks_controllers(robot: RobotDescription) -> bool:
     return bool(managers) and not any(_has_files(tag) for tag in managers)
 
 
-def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list[Path]:
+def files_for(
+    robot: Path, joints: Sequence[str], *, ros2: bool = False, within: Path | None = None
+) -> list[Path]:
     """Returns YAML files with controllers for a robot's joints, or for the states of all joints.
 
     The folders named ``config`` in the robot's package and in the packages beside it are searched,
@@ -102,11 +107,12 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
         robot: File of the robot.
         joints: Names of the movable joints.
         ros2: Search for ROS 2 parameter files.
+        within: A folder; files outside of it are not used.
     """
     package = _package(robot)
     own: list[tuple[Path, bool]] = []
     others: list[tuple[Path, bool]] = []
-    for path, named in _fitting(_candidates(package), joints, ros2=ros2):
+    for path, named in _fitting(_candidates(package, within), joints, ros2=ros2):
         (own if package in path.parents else others).append((path, named))
     if package is not None and not any(named for _, named in own + others):
         own += [each for each in _fitting(_elsewhere(package), joints, ros2=ros2) if each[1]]
@@ -202,12 +208,13 @@ def _package(robot: Path) -> Path | None:
     return next((each for each in folders if package_name(each) is not None), None)
 
 
-def _candidates(package: Path | None) -> Iterator[Path]:
+def _candidates(package: Path | None, within: Path | None) -> Iterator[Path]:
     if package is None:
         return
     seen = 0
+    root = within.resolve() if within is not None else package.parent
     for folder in sorted(package.parent.iterdir()):
-        if package_name(folder) is None:
+        if package_name(folder) is None or not (folder == package or folder.is_relative_to(root)):
             continue
         for path in sorted(folder.glob("**/config/**/*.y*ml")):
             seen += 1

@@ -1,0 +1,113 @@
+"""Robots of several repositories that are side by side in one folder."""
+
+from pathlib import Path
+
+import pytest
+
+from cartwheel.checks.checking import check
+from cartwheel.cli.commands.corpus import corpus
+from cartwheel.corpus import try_robot
+from cartwheel.description.files.repositories import repository_of
+
+ARM = (
+    '<robot name="arm"><link name="world"/><link name="base"/><link name="upper">'
+    '<inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial></link>'
+    '<joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>'
+    '<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>'
+    '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
+    '<transmission name="t"><type>transmission_interface/SimpleTransmission</type>'
+    '<joint name="shoulder"><hardwareInterface>hardware_interface/PositionJointInterface'
+    '</hardwareInterface></joint><actuator name="m"/></transmission>'
+    '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo></robot>'
+)
+CONTROLLER = "move:\n  type: position_controllers/JointPositionController\n  joint: shoulder\n"
+LAUNCH = (
+    '<launch><param name="robot_description" command="xacro $(find arm_description)/arm.urdf"/>'
+    '<rosparam file="$(find arm_sim)/settings/move.yaml" command="load"/>'
+    '<node name="s" pkg="controller_manager" type="spawner" args="move"/></launch>'
+)
+
+
+def package(folder: Path, name: str, files: dict[str, str]) -> None:
+    for path, text in {"package.xml": f"<package><name>{name}</name></package>", **files}.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A repository with an arm, and one of another author with a controller for such an arm."""
+    package(tmp_path / "one", "arm_description", {"arm.urdf": ARM})
+    package(tmp_path / "two", "arm_sim", {"config/move.yaml": CONTROLLER})
+    return tmp_path
+
+
+@pytest.mark.parametrize("marker", [".git", ".github", ".gitignore"])
+def test_controllers_of_another_repository_are_not_used(folder, marker):
+    arm = folder / "one" / "arm.urdf"
+    assert try_robot(arm, standing=1.0).controllers == ("move",)
+    (folder / "one" / marker).mkdir()
+    verdict = try_robot(arm, standing=1.0)
+    assert not verdict.controllers
+    assert [fault.test for fault in verdict.faults] == ["controller"]
+    assert verdict.faults[0].code.name == "controllers-not-found"
+    assert str(folder / "two" / "config/move.yaml") not in check(arm).files
+
+
+def test_controllers_of_the_same_repository_are_used(folder):
+    (folder / ".git").mkdir()
+    (folder / "one" / ".gitignore").touch()
+    verdict = try_robot(folder / "one" / "arm.urdf", standing=1.0)
+    assert verdict.controllers == ("move",)
+
+
+def test_nothing_outside_of_the_given_folder_is_used(folder, capsys):
+    corpus([folder / "one"], [], json=True, standing=1.0)
+    assert '"controllers": []' in capsys.readouterr().out
+    corpus([folder], [], json=True, standing=1.0)
+    assert '"move"' in capsys.readouterr().out
+
+
+def test_launch_files_of_another_repository_are_not_used(folder):
+    (folder / "two" / "config/move.yaml").unlink()
+    files = {"launch/arm.launch": LAUNCH, "settings/move.yaml": CONTROLLER}
+    package(folder / "two", "arm_sim", files)
+    arm = folder / "one" / "arm.urdf"
+    assert try_robot(arm, standing=1.0, folder=folder).controllers == ("move",)
+    (folder / "two" / ".git").mkdir()
+    verdict = try_robot(arm, standing=1.0, folder=folder)
+    assert verdict.launch is None
+    assert not verdict.controllers
+
+
+def test_a_launch_file_that_names_no_robot_is_used_near_it_only(folder):
+    """Without their hidden files, the roots of repositories are unknown."""
+    (folder / "two" / "config/move.yaml").unlink()
+    start = LAUNCH.replace(LAUNCH[LAUNCH.index("<param") : LAUNCH.index("<rosparam")], "")
+    files = {"launch/arm.launch": start, "settings/move.yaml": CONTROLLER}
+    package(folder / "two" / "sim", "arm_sim", files)
+    (folder / "two" / "package.xml").unlink()
+    (folder / "robots").mkdir()
+    arm = (folder / "one").rename(folder / "robots" / "one") / "arm.urdf"
+    assert not try_robot(arm, standing=1.0, folder=folder).controllers
+    near = (folder / "two" / "sim").rename(folder / "robots" / "sim")
+    assert near.is_dir()
+    assert try_robot(arm, standing=1.0, folder=folder).controllers == ("move",)
+
+
+def test_the_root_of_a_repository_is_found(tmp_path):
+    file = tmp_path / "ws" / "repo" / "package" / "urdf" / "robot.urdf"
+    file.parent.mkdir(parents=True)
+    assert repository_of(file) is None
+    (file.parents[1] / ".gitignore").touch()
+    assert repository_of(file) == file.parents[1]
+    (file.parents[2] / ".gitignore").touch()
+    assert repository_of(file) == file.parents[2]
+    (file.parents[3] / ".git").mkdir()
+    assert repository_of(file) == file.parents[3]
+    assert repository_of(file, file.parents[2]) == file.parents[2]
+    (file.parents[2] / ".git").touch()
+    assert repository_of(file) == file.parents[2]
+    (file.parents[3] / ".gitmodules").touch()
+    assert repository_of(file) == file.parents[3]
