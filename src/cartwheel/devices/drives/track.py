@@ -21,6 +21,8 @@ _PARALLEL = 0.99
 """Cosine of the angle between two axes from which on they count as parallel."""
 _ONE_SIDE = 0.25
 """Square of the length of a mean normal above which contacts are on one side of a collision."""
+_STILL = [0.0] * 6
+"""The motion of a surface that does not move; see `SurfaceHandle.move`."""
 Field = tuple[Array, Array]
 """Velocity of a surface at the origin of its collision, m/s, and angular velocity, rad/s, in the
 world; each shape (3,)."""
@@ -103,8 +105,8 @@ class Track(Component):
         self._motions: list[list[float]] = []
         """The next motion of each collision's surface; see `SurfaceHandle.move`."""
         self._sides: dict[int, Array] = {}
-        """For each collision that has touched a body, the side of the last touch: the mean normal
-        into the collision, in the axes of the track."""
+        """For each collision that has touched a body while the track moved, the side of the last
+        touch: the mean normal into the collision, in the axes of the track."""
         self.distance = 0.0
         """Distance that the track moved, m."""
 
@@ -143,6 +145,9 @@ class Track(Component):
         if timeout is not None and age > timeout:
             wanted = 0.0
         velocity = float(self._limiter.step(wanted, seconds))
+        if velocity == 0:
+            self._motions = [_STILL] * self._surface.count
+            return
         self.distance += velocity * seconds
         _, turned = self._link.place()
         axes = matrix_from_quat(turned) @ self._axes

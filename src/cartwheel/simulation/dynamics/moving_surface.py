@@ -68,6 +68,11 @@ class SurfaceHandle:
         # The compiler clears it if no surface moves.
         model.flg_surfacevel = True
 
+    @property
+    def count(self) -> int:
+        """Number of the link's collisions."""
+        return len(self._geoms)
+
     def stop(self) -> None:
         """Stops the surfaces; none move before the model is compiled."""
         if not self._geoms:
