@@ -14,7 +14,7 @@ from cartwheel.checks.subject import Subject
 from cartwheel.description.model import Element
 from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
-from cartwheel.dialects.ros_control.parameters import OWN, Role, Row, rows
+from cartwheel.dialects.ros_control.parameters import OWN, SIZES, Role, Row, rows
 from cartwheel.errors import Severity, UnknownNameError
 
 _INTERFACES = {
@@ -107,6 +107,20 @@ def wheel_sides(controller: Controller) -> list[list[Value]]:
         if len(groups) == 2 and all(groups) and groups[0] is not groups[1]:
             return groups
     return []
+
+
+def base_controllers(subject: Subject) -> Iterator[tuple[Robot, Controller]]:
+    """The controllers that drive a robot by its wheels, each with its robot."""
+    for robot, file in subject.control:
+        for controller in file.controllers:
+            if table(controller, *SIZES) and wheels_of(robot, controller):
+                yield robot, controller
+
+
+def wheels_of(robot: Robot, controller: Controller) -> list[str]:
+    """Those of a controller's joints that a robot has."""
+    named = (claim.joint for claim in claims(controller))
+    return list(dict.fromkeys(name for name in named if name in robot.joints))
 
 
 def _interfaces(controller: Controller, row: Row) -> list[str]:

@@ -84,14 +84,20 @@ def faults(
     if not verdict.loaded:
         return
     # Two plugins of a kind are one fault.
-    missing = {fault.subject: fault for fault in reversed([*_missing(verdict, description)])}
+    held = bool([*_held_bases(verdict, description, findings)])
+    missing = {
+        fault.subject: fault for fault in reversed([*_missing(verdict, description, held=held)])
+    }
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     yield from _measured(verdict, description, findings, idle if not verdict.controllers else None)
 
 
-def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
-    """Plugins that should move the robot and are missing, and controllers that did not start."""
+def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> Iterator[Fault]:
+    """Plugins that should move the robot and are missing, and controllers that did not start.
+
+    `held` is whether something that drives a base was not tested, because the base is fixed.
+    """
     said = verdict.diagnostics
     for tag in moving_plugins(description):
         if is_known(tag):
@@ -128,7 +134,7 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
         unread = next((each for each in verdict.observed if _contains(each, name)), None)
         if unread is not None:
             yield Fault(test="controller", subject=name, reason=unread)
-    if verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
+    if held or verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
         return
     if verdict.failure is not None and verdict.controllers:
         # The simulation stopped before the controllers were tested.
@@ -213,11 +219,8 @@ def _measured(
     for topic in verdict.silent:
         reason = _coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
-    if verdict.stand is not None and verdict.stand.fixed and Robot(description, None).drives:
-        for each in findings():
-            if each.code is robot.BASE_FIXED:
-                subject = short_name(str(each.values["plugin"]))
-                yield Fault(test="drive", subject=subject, reason=each)
+    for subject, reason in _held_bases(verdict, description, findings):
+        yield Fault(test="drive", subject=subject, reason=reason)
     pushed = any(drive.follows and drive.turns for drive in verdict.drives)
     for drive in verdict.drives:
         if pushed and not (drive.follows and drive.turns) and is_free(said, drive.topic):
@@ -253,6 +256,25 @@ def _measured(
     for flight in verdict.flights:
         if not flight.flies:
             yield Fault(test="fly", subject=flight.topic)
+
+
+def _held_bases(
+    verdict: Verdict,
+    description: RobotDescription,
+    findings: Callable[[], Sequence[Diagnostic]],
+) -> Iterator[tuple[str, Diagnostic]]:
+    """Plugins and controllers that cannot drive a robot, because it is fixed to the world."""
+    if verdict.stand is None or not verdict.stand.fixed:
+        return
+    if not verdict.controllers and not Robot(description, None).drives:
+        return
+    for each in findings():
+        if each.code is robot.BASE_FIXED:
+            controller = str(each.values.get("controller", ""))
+            if not controller:
+                yield short_name(str(each.values["plugin"])), each
+            elif controller in verdict.controllers and _is_started(controller, verdict):
+                yield controller, each
 
 
 def _is_started(controller: str, verdict: Verdict) -> bool:
