@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 from cartwheel.checks.controller_claims import base_controllers, wheels_of
 from cartwheel.checks.robot import Robot
@@ -16,40 +17,41 @@ from cartwheel.errors import Diagnostic, Origin
 _WORLD = "world"
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Driver:
+    """A plugin or controller that drives a base."""
+
+    kind: str
+    """A noun for it."""
+    name: str
+    wheels: tuple[str, ...]
+    """Joints that turn the wheels."""
+    origin: Origin
+    values: Mapping[str, str] = field(default_factory=dict)
+    """More values of the finding."""
+
+
 @rule(robot_codes.BASE_FIXED)
 def base_fixed(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive in drives_in(subject):
-        name = drive.tag.filename
-        wheels = [robot.joints[each] for each in drive.joints if each in robot.joints]
-        yield from _held(
-            subject, robot, wheels, f'plugin "{name}"', {"plugin": name}, drive.tag.origin
+        tag = drive.tag
+        plugin = _Driver(kind="plugin", name=tag.filename, wheels=drive.joints, origin=tag.origin)
+        yield from _held(subject, robot, plugin)
+    for robot, each in base_controllers(subject):
+        controller = _Driver(
+            kind="controller",
+            name=each.name,
+            wheels=tuple(wheels_of(robot, each)),
+            origin=each.type.origin,
+            values={"type": each.kind},
         )
-    for robot, controller in base_controllers(subject):
-        wheels = [robot.joints[each] for each in wheels_of(robot, controller)]
-        name = controller.name
-        values = {"controller": name, "type": controller.kind}
-        origin = controller.type.origin
-        yield from _held(subject, robot, wheels, f'controller "{name}"', values, origin)
+        yield from _held(subject, robot, controller)
 
 
-def _held(
-    subject: Subject,
-    robot: Robot,
-    wheels: Sequence[Joint],
-    what: str,
-    values: dict[str, str],
-    origin: Origin,
-) -> Iterator[Diagnostic]:
-    """The finding that something cannot drive a robot.
-
-    Args:
-        subject: The description.
-        robot: The robot.
-        wheels: The joints that turn its wheels; nothing is reported without any.
-        what: A noun phrase for what drives it.
-        values: The values of the finding.
-        origin: The place that states what drives it.
-    """
+def _held(subject: Subject, robot: Robot, driver: _Driver) -> Iterator[Diagnostic]:
+    """The finding that a plugin or controller cannot drive a robot."""
+    wheels = [robot.joints[each] for each in driver.wheels if each in robot.joints]
+    values, origin = {driver.kind: driver.name, **driver.values}, driver.origin
     holder = next(filter(None, (_holder(robot, each.parent) for each in wheels)), None)
     if not wheels or (holder is None and not robot.description.static):
         return
@@ -61,7 +63,7 @@ def _held(
         hint = f"Remove the joint{link}."
         values, origin = {**values, "joint": holder.name}, holder.origin
     yield robot_codes.BASE_FIXED.diagnostic(
-        message=f"{what} cannot drive the robot, because {why}",
+        message=f'{driver.kind} "{driver.name}" cannot drive the robot, because {why}',
         values=values,
         origin=origin,
         hint=hint,
