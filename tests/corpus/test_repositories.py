@@ -82,17 +82,16 @@ def test_launch_files_of_another_repository_are_not_used(folder):
 
 
 def test_a_launch_file_that_names_no_robot_is_used_near_it_only(folder):
-    """Without their hidden files, the roots of repositories are unknown."""
+    """Without hidden files, each folder in the given one may be a repository."""
     (folder / "two" / "config/move.yaml").unlink()
     start = LAUNCH.replace(LAUNCH[LAUNCH.index("<param") : LAUNCH.index("<rosparam")], "")
     files = {"launch/arm.launch": start, "settings/move.yaml": CONTROLLER}
-    package(folder / "two" / "sim", "arm_sim", files)
+    package(folder / "two" / "sims" / "arm", "arm_sim", files)
     (folder / "two" / "package.xml").unlink()
     (folder / "robots").mkdir()
     arm = (folder / "one").rename(folder / "robots" / "one") / "arm.urdf"
     assert not try_robot(arm, standing=1.0, folder=folder).controllers
-    near = (folder / "two" / "sim").rename(folder / "robots" / "sim")
-    assert near.is_dir()
+    (folder / "two" / "sims").rename(folder / "robots" / "sims")
     assert try_robot(arm, standing=1.0, folder=folder).controllers == ("move",)
 
 

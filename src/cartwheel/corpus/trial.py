@@ -90,7 +90,7 @@ def try_robot(
     """
     verdict = Verdict(file=file, model=model)
     if launches is None:
-        near = root_of(file)
+        near = folder or root_of(file)
         launches = launches_near(near, package_path) if near is not None else ()
     own = own_folder(file, folder)
     launches = own_launches(file, launches, folder)

@@ -142,18 +142,22 @@ def root_of(description: Path) -> Path | None:
 def own_folder(description: Path, within: Path | None = None) -> Path:
     """The folder with the files of a description's author, in which unnamed files may be meant.
 
-    It is the repository, or, if this is unknown, the folder of `root_of`, or that of the file.
+    It is the repository. If this is unknown, it is the folder of `root_of`, or the subfolder of
+    `within`, in which the repositories may be side by side.
 
     Args:
         description: The description.
         within: The folder that the user gave. If it contains the package, the result is in it.
     """
-    repository = repository_of(description, within)
-    found = repository or root_of(description) or description.absolute().parent
-    home = package_above(description.absolute().parent)
-    if within is None or home is None or not home.is_relative_to(within.absolute()):
-        return found
-    return found if found.is_relative_to(within.absolute()) else within.absolute()
+    file = description.absolute()
+    near = root_of(file) or file.parent
+    home = package_above(file.parent) or file.parent
+    repository = repository_of(file, within)
+    if within is None or not home.is_relative_to(given := within.absolute()):
+        return repository or near
+    if repository is not None or not near.is_relative_to(given):
+        return repository or given
+    return near if near == given else given / near.relative_to(given).parts[0]
 
 
 def own_launches(
@@ -161,22 +165,22 @@ def own_launches(
 ) -> list[LaunchUse]:
     """The launch files of a description's author.
 
-    They are in the same repository. If this is unknown, they are in none, and those that name no
-    description are in `own_folder`.
+    They are in the same repository. If this is unknown, they are in none, and if a folder is given,
+    those that name no description are in `own_folder`.
 
     Args:
         description: The description.
         uses: Contents of launch files.
         within: The folder that the user gave.
     """
-    repository = repository_of(description, within)
-    own = own_folder(description, within)
+    repository, own = repository_of(description, within), own_folder(description, within)
+    inside = [each for each in uses if each.file.absolute().is_relative_to(own)]
     if repository is not None:
-        return [each for each in uses if each.file.absolute().is_relative_to(own)]
+        return inside
     return [
         each
         for each in uses
-        if (each.description is not None or each.file.absolute().is_relative_to(own))
+        if (within is None or each.description is not None or each in inside)
         and repository_of(each.file, within) is None
     ]
 

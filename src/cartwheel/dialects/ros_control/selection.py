@@ -164,7 +164,8 @@ def _undefined(
     folder = within or root_of(Path(robot.origin.file))
     if starter is None or not starter.spawned or folder is None or not is_controlled(robot):
         return
-    roots = dict.fromkeys((folder, within or root_of(starter.file) or folder))
+    inside = starter.file.absolute().is_relative_to(folder)
+    roots = dict.fromkeys((folder, folder if inside else root_of(starter.file) or folder))
     searched = [_definitions(root) for root in roots]
     if not all(searched):
         return
