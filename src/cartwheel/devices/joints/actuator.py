@@ -102,7 +102,7 @@ class JointActuator:
             )
         self._yields = config.yields
         self._idles = config.idles
-        self._report_two = partial(part.report_two_drives, name, "the last command is used", origin)
+        self._report_two = partial(part.report_two_drives, name, origin=origin)
         self._active = self._resting = ""
         self.command = 0.0
         """The active command: rad or m, rad/s or m/s, or N m or N."""
@@ -185,7 +185,10 @@ class JointActuator:
         """Selects the active command. The joint stays at its position."""
         self._select(command)
         if self._yields and self._rivalled:
-            self._report_two()
+            added = command == "effort"
+            self._report_two(
+                "the efforts of both plugins are added" if added else "the last command is used"
+            )
 
     def _select(self, command: str) -> None:
         self._active = command

@@ -75,7 +75,8 @@ class JointHardware(JointActuator):
                 led=joint.mimic is not None or interfaces.mimic is not None,
                 # gz_ros2_control and gazebo_ros2_control stop such joints once in each control
                 # period, after which the motor of the drive plugin turns them on in the same step.
-                yields=limits is None,
+                # gazebo_ros_control adds an effort of 0 without a controller.
+                yields=limits is None or set(interfaces.commands) == {"effort"},
                 origin=interfaces.origin,
             ),
         )
