@@ -14,14 +14,14 @@ ARM = (
     '<inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
     '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial></link>'
     '<joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>'
-    '<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>'
+    '<joint name="lid_hinge" type="revolute"><parent link="base"/><child link="upper"/>'
     '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
     '<transmission name="t"><type>transmission_interface/SimpleTransmission</type>'
-    '<joint name="shoulder"><hardwareInterface>hardware_interface/PositionJointInterface'
+    '<joint name="lid_hinge"><hardwareInterface>hardware_interface/PositionJointInterface'
     '</hardwareInterface></joint><actuator name="m"/></transmission>'
     '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo></robot>'
 )
-CONTROLLER = "move:\n  type: position_controllers/JointPositionController\n  joint: shoulder\n"
+CONTROLLER = "move:\n  type: position_controllers/JointPositionController\n  joint: lid_hinge\n"
 LAUNCH = (
     '<launch><param name="robot_description" command="xacro $(find arm_description)/arm.urdf"/>'
     '<rosparam file="$(find arm_sim)/settings/move.yaml" command="load"/>'

@@ -47,10 +47,11 @@ from cartwheel.codes.running import (
     PLUGIN_LEFT_OUT,
 )
 from cartwheel.codes.world import SIMULATION_DIVERGED
-from cartwheel.corpus import trial, try_robot
+from cartwheel.corpus import try_robot
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.drive_causes import cause_of_drive
 from cartwheel.corpus.motion import positions
+from cartwheel.corpus.placing import HIGH, place
 from cartwheel.corpus.resting import gave_way
 from cartwheel.corpus.trial import _listened
 from cartwheel.corpus.verdict import Drive, Reach, Stand, Verdict
@@ -1342,8 +1343,8 @@ def test_an_arm_that_hangs_far_below_its_base_is_tested_above_the_ground(tmp_pat
     )
     found = tried(ARM.format(kind="Effort"), ball, controllers=[path])
     assert found.good, found.faults
-    place = trial._place(load_text(_text(ARM.format(kind="Effort"), ball), file="robot.urdf"))
-    assert place.z - 8.1 >= trial._HIGH - 0.01
+    pose = place(load_text(_text(ARM.format(kind="Effort"), ball), file="robot.urdf"))
+    assert pose.z - 8.1 >= HIGH - 0.01
 
 
 MOTOR = (

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
-from cartwheel.corpus.faults import Fault, most_severe
+from cartwheel.corpus.faults import Fault, Test, most_severe
 from cartwheel.corpus.movers import is_known, managers, moving_plugins
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
@@ -229,11 +229,12 @@ def _measured(
         # A robot that fell cannot drive, nor one that its own wheels throw over.
         unsteady = fallen or flywheel((*said, *findings()), description)
         if not drive.follows:
-            forward = cause_of_drive((*said, *findings()), 1.0 + drive.error, turning=False)
+            found = _explaining((*said, *findings()), verdict, "drive", drive.topic)
+            forward = cause_of_drive(found, 1.0 + drive.error, turning=False)
             yield Fault(test="drive", subject=drive.topic, reason=forward or unsteady)
         if not drive.turns:
             reason = cause_of_drive(
-                (*said, *findings()),
+                _explaining((*said, *findings()), verdict, "turn", drive.topic),
                 1.0 + drive.error_turn,
                 turning=True,
                 arc=drive.turning == "arc",
@@ -246,16 +247,26 @@ def _measured(
         if not reach.arrived and _is_started(reach.controller, verdict):
             # A robot that fell may lie on its joints.
             names = reach.joint, children.get(reach.joint, "")
-            reason = _of_joint((*said, *findings()), *names) or fallen
+            found = _explaining((*said, *findings()), verdict, "reach", reach.joint)
+            reason = _of_joint(found, *names) or fallen
             yield Fault(test="reach", subject=reach.joint, reason=reason)
     for spin in verdict.spins:
         if not spin.follows:
             names = spin.joint, children.get(spin.joint, "")
-            reason = _of_joint((*said, *findings()), *names)
+            found = _explaining((*said, *findings()), verdict, "spin", spin.joint)
+            reason = _of_joint(found, *names)
             yield Fault(test="spin", subject=spin.joint, reason=reason)
     for flight in verdict.flights:
         if not flight.flies:
             yield Fault(test="fly", subject=flight.topic)
+
+
+def _explaining(
+    found: Sequence[Diagnostic], verdict: Verdict, test: Test, subject: str
+) -> list[Diagnostic]:
+    """The diagnostics that may explain a failed test, by what the tests showed."""
+    hindered = (test, subject) in verdict.hindered
+    return [each for each in found if hindered or each.code is not running.JOINT_DRIVEN_TWICE]
 
 
 def _held_bases(

@@ -7,8 +7,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from cartwheel.api import Model, World
 from cartwheel.checks.checking import check
 from cartwheel.checks.robot import Robot
@@ -19,9 +17,11 @@ from cartwheel.corpus.flights import flights
 from cartwheel.corpus.gains import undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.movers import STEERED, movers
+from cartwheel.corpus.placing import HIGH, name_in, put, surroundings
 from cartwheel.corpus.poses import posed
 from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
-from cartwheel.corpus.thrusters import bursts, has_thrusters, is_in_space, thrusts
+from cartwheel.corpus.rivals import hindered
+from cartwheel.corpus.thrusters import bursts, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.corpus.worlds import load_from_world
 from cartwheel.description import load_robot
@@ -34,14 +34,12 @@ from cartwheel.description.launches import (
     root_of,
 )
 from cartwheel.description.model import Joint, RobotDescription
-from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.ros_control.selection import selection, with_published_control
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
-from cartwheel.geometry import Pose
 from cartwheel.graph import Subscription
 
 STANDING = 10.0
@@ -49,13 +47,6 @@ STANDING = 10.0
 _LISTENING = 1.0
 """Time in which a topic with a stated rate of some Hz must publish, s."""
 _LONGEST = 5.0
-_HIGH = 5.0
-"""m."""
-_WATER = """<sdf version="1.9"><world name="water"><gravity>0 0 -9.8</gravity>
-<plugin name="buoyancy" filename="gz-sim-buoyancy-system"/></world></sdf>"""
-"""A world filled with water, for robots with thrusters."""
-_SPACE = """<sdf version="1.9"><world name="space"><gravity>0 0 0</gravity></world></sdf>"""
-"""A world without gravity and ground, for spacecraft."""
 
 
 def try_robot(
@@ -116,12 +107,8 @@ def try_robot(
         controllers, spawned = selected.files, selected.names
         verdict = replace(verdict, observed=selected.problems)
     try:
-        with World(_surroundings(robot), lenient=True) as world:
-            pose = _place(robot)
-            spawned_model = world.spawn(
-                robot, name=_name_in(world, robot), x=pose.x, y=pose.y, z=pose.z,
-                roll=pose.rpy[0], pitch=pose.rpy[1], yaw=pose.rpy[2], controllers=controllers,
-            )  # fmt: skip
+        with World(surroundings(robot), lenient=True) as world:
+            robot_model = put(world, robot, controllers)
             verdict = replace(
                 verdict,
                 loaded=True,
@@ -130,7 +117,7 @@ def try_robot(
                 spawned=spawned,
             )
             held: set[str] = set()
-            for found in _moved(verdict, world, spawned_model, robot, standing, held=held):
+            for found in _moved(verdict, world, robot_model, robot, standing, held=held):
                 verdict = replace(found, diagnostics=world.diagnostics)
         if _lies(verdict) or _is_stuck(verdict):
             verdict = _hung(verdict, robot, controllers)
@@ -143,6 +130,8 @@ def try_robot(
                     for each in verdict.reaches
                 ),
             )
+        alone = partial(_again, verdict, controllers)
+        verdict = replace(verdict, hindered=hindered(verdict, robot, alone))
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
     findings = _Findings(file, arguments, package_path, controllers, is_inside)
@@ -150,9 +139,13 @@ def try_robot(
     return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
 
 
-def _name_in(world: World, robot: RobotDescription) -> str:
-    """A name for the robot that is part of its topics. A ground_plane already exists."""
-    return f"{robot.name}_tried" if robot.name in world.models else robot.name
+def _again(verdict: Verdict, controllers: Sequence[Path], robot: RobotDescription) -> Verdict:
+    """The verdict on a robot with fewer plugins."""
+    start = replace(verdict, drives=(), reaches=(), spins=(), flights=())
+    with World(surroundings(robot), lenient=True) as world:
+        model = put(world, robot, controllers)
+        *_, moved = _moved(start, world, model, robot, _LISTENING, held=set())
+    return moved
 
 
 class _Findings:
@@ -211,29 +204,6 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
     )
 
 
-def _place(robot: RobotDescription) -> Pose:
-    """The pose at which the lowest collision touches the ground; well above it for a fixed robot.
-
-    An arm may extend below its base.
-    """
-    if robot.static:
-        return robot.pose
-    clouds = [
-        solid.placed(robot.pose @ link.pose)
-        for link in robot.links
-        for collision in link.collisions
-        if (solid := solid_of(collision, link.name)) is not None
-    ]
-    box = bounds(clouds)
-    if any(joint.parent == "world" and joint.type != "floating" for joint in robot.joints):
-        lowest = 0.0 if box is None else float(np.round(box[0][2], 6))
-        return Pose((0.0, 0.0, _HIGH + max(0.0, -lowest))) @ robot.pose
-    if box is None:
-        return robot.pose
-    x, y, z = robot.pose.position
-    return Pose((x, y, z - float(np.round(box[0][2], 6))), robot.pose.orientation)
-
-
 def _moved(
     verdict: Verdict,
     world: World,
@@ -288,13 +258,6 @@ def _moved(
     yield replace(moved, spins=(*moved.spins, *pushes))
 
 
-def _surroundings(robot: RobotDescription) -> str:
-    """The world in which a robot is tested."""
-    if has_thrusters(robot):
-        return _WATER
-    return _SPACE if is_in_space(robot) else "empty"
-
-
 def _joints_moved(
     verdict: Verdict, world: World, model: Model, robot: RobotDescription, held: set[str]
 ) -> Iterator[Verdict]:
@@ -335,7 +298,7 @@ def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]
     )
     hung = replace(robot, joints=(*robot.joints, hook))
     with World("empty", lenient=True) as world:
-        model = world.spawn(hung, name=_name_in(world, robot), z=_HIGH, controllers=controllers)
+        model = world.spawn(hung, name=name_in(world, robot), z=HIGH, controllers=controllers)
         # The controllers start with the simulation.
         world.run(_LISTENING)
         *_, moved = _joints_moved(verdict, world, model, robot, set())

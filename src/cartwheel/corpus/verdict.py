@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from cartwheel.corpus.faults import MOTION, Fault
+from cartwheel.corpus.faults import MOTION, Fault, Test
 from cartwheel.description.launches import LaunchUse
 from cartwheel.errors import Diagnostic
 
@@ -226,6 +226,9 @@ class Verdict:
     launch: LaunchUse | None = None
     """The launch file whose arguments were used."""
     diagnostics: tuple[Diagnostic, ...] = ()
+    hindered: frozenset[tuple[Test, str]] = frozenset()
+    """The failed tests, each with topic or joint, whose error changes if only one of two plugins
+    drives the joints."""
     observed: tuple[Diagnostic, ...] = ()
     """Reasons for failures that were seen in the simulation, or in the files of launch files."""
 

@@ -1,0 +1,81 @@
+"""Whether a robot moves differently if only one of two plugins drives its joints.
+
+Two plugins that drive a joint explain a failure only if the error changes without one of them.
+Therefore, the robot is tested again with each of them alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from cartwheel.checks.robot import Robot
+from cartwheel.codes.running import JOINT_DRIVEN_TWICE
+from cartwheel.corpus.faults import Test
+from cartwheel.corpus.movers import managers, reports
+from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.model import PluginTag, RobotDescription
+from cartwheel.dialects.catalogue import short_name
+from cartwheel.errors import CartwheelError
+
+_MOST = 4
+"""Maximum number of plugins that are tested alone."""
+_CHANGE = 0.5
+"""Smallest change of an error without the other plugin, relative to the error."""
+
+
+def hindered(
+    verdict: Verdict, robot: RobotDescription, again: Callable[[RobotDescription], Verdict]
+) -> frozenset[tuple[Test, str]]:
+    """The failed tests, each with its topic or joint, whose error one of two plugins causes.
+
+    Args:
+        verdict: The measurements.
+        robot: The robot.
+        again: Tests a robot.
+    """
+    contested = {
+        str(each.values["joint"])
+        for each in verdict.diagnostics
+        if each.code is JOINT_DRIVEN_TWICE and "joint" in each.values
+    }
+    failed = {each: error for each, error, passed in _errors(verdict) if not passed}
+    if not contested or not failed:
+        return frozenset()
+    drivers = [tag for tag in robot.plugins if _drives(tag, robot, contested)]
+    found: set[tuple[Test, str]] = set()
+    for alone in drivers[:_MOST] if len(drivers) > 1 else ():
+        plugins = [tag for tag in robot.plugins if tag is alone or tag not in drivers]
+        try:
+            other = again(replace(robot, plugins=tuple(plugins)))
+        except CartwheelError:
+            continue
+        errors = {each: error for each, error, _ in _errors(other)}
+        found |= {
+            each
+            for each, error in failed.items()
+            if each in errors and abs(errors[each] - error) >= _CHANGE * abs(error)
+        }
+    return frozenset(found)
+
+
+def _drives(tag: PluginTag, robot: RobotDescription, joints: set[str]) -> bool:
+    """Whether a plugin drives one of these joints, or runs controllers that may."""
+    named = {word for each in tag.element.walk() for word in each.text.split()}
+    for drive in Robot(robot, None).drives:
+        if drive.tag is tag:
+            named.update(drive.joints)
+    if tag in managers(robot):
+        return True
+    return not joints.isdisjoint(named) and not reports(short_name(tag.filename))
+
+
+def _errors(verdict: Verdict) -> Iterator[tuple[tuple[Test, str], float, bool]]:
+    """The tests of motion, with their errors, and whether they passed."""
+    for drive in verdict.drives:
+        yield ("drive", drive.topic), drive.error, drive.follows
+        yield ("turn", drive.topic), drive.error_turn, drive.turns
+    for reach in verdict.reaches:
+        yield ("reach", reach.joint), reach.error, reach.arrived
+    for spin in verdict.spins:
+        yield ("spin", spin.joint), spin.measured - spin.commanded, spin.follows

@@ -1,0 +1,67 @@
+"""Joints that two plugins drive, as the reason why a robot does not follow its commands."""
+
+import pytest
+from tests.corpus.carts import cart, controlled, plugin, written
+
+from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED, WHEEL_SEPARATION_MISMATCH
+from cartwheel.codes.running import JOINT_DRIVEN_TWICE
+from cartwheel.corpus import try_robot
+
+TRANSMISSION = (
+    '<transmission name="{name}"><type>transmission_interface/SimpleTransmission</type>'
+    '<joint name="{name}_joint"><hardwareInterface>hardware_interface/{kind}JointInterface'
+    '</hardwareInterface></joint><actuator name="m"/></transmission>'
+)
+MANAGER = '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
+
+
+def managed(kind: str) -> str:
+    """ROS 1's controller manager with both wheels, which no controller commands."""
+    wheels = (TRANSMISSION.format(name=name, kind=kind) for name in ("left", "right"))
+    return "".join(wheels) + MANAGER
+
+
+def reasons(verdict):
+    return {each.test: each.code for each in verdict.faults}
+
+
+@pytest.mark.parametrize(
+    ("separation", "turn"), [(0.2, JOINT_DRIVEN_TWICE), (0.5, JOINT_DRIVEN_TWICE)]
+)
+def test_hardware_that_holds_the_wheels_of_a_drive_is_why_it_is_slow(tmp_path, separation, turn):
+    verdict = try_robot(
+        written(tmp_path, cart(), plugin(separation), managed("Velocity")), standing=1.0
+    )
+    assert reasons(verdict) == {"drive": JOINT_DRIVEN_TWICE, "turn": turn}
+    assert verdict.outcome == "file"
+
+
+def test_hardware_without_controllers_does_not_hide_another_reason(tmp_path):
+    reversed_wheel = cart().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>', 1)
+    path = written(tmp_path, reversed_wheel, plugin(), managed("Velocity"))
+    verdict = try_robot(path, standing=1.0)
+    assert JOINT_DRIVEN_TWICE in {each.code for each in verdict.diagnostics}
+    assert set(reasons(verdict).values()) == {WHEEL_AXIS_MISALIGNED}
+
+
+@pytest.mark.parametrize("separation", [0.2, 0.5])
+def test_effort_hardware_that_no_controller_commands_changes_nothing(tmp_path, separation):
+    path = written(tmp_path, cart(), plugin(separation), managed("Effort"))
+    verdict = try_robot(path, standing=1.0)
+    assert JOINT_DRIVEN_TWICE not in {each.code for each in verdict.diagnostics}
+    right = separation == 0.2
+    assert reasons(verdict) == ({} if right else {"turn": WHEEL_SEPARATION_MISMATCH})
+
+
+def test_a_controller_of_the_wheels_of_a_drive_is_why_it_is_slow(tmp_path):
+    verdict = try_robot(written(tmp_path, cart(), plugin(), controlled(tmp_path)), standing=1.0)
+    assert [(each.subject, each.code) for each in verdict.faults] == [
+        ("/cmd_vel", JOINT_DRIVEN_TWICE)
+    ] * 2
+
+
+def test_a_wrong_size_explains_the_turn_rate_of_two_drives_before_their_number(tmp_path):
+    again = plugin(0.4).replace('name="drive"', 'name="again"')
+    verdict = try_robot(written(tmp_path, cart(), plugin(), again), standing=1.0)
+    assert JOINT_DRIVEN_TWICE in {each.code for each in verdict.diagnostics}
+    assert reasons(verdict) == {"turn": WHEEL_SEPARATION_MISMATCH}
