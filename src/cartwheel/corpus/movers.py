@@ -7,7 +7,7 @@ import re
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
-from cartwheel.dialects.world_plugins import BUILT_IN
+from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
 
 _MOVES = re.compile(
     r"drive|steer|drone|copter|planar_move|force_based_move|motor|mecanum|tricycle|kobuki|multi_wheel|thruster"
@@ -19,6 +19,8 @@ _RECORDS = re.compile(r"(?:^|_)bag_plugin|record", re.IGNORECASE)
 """Names of plugins that only record what moves."""
 _REPORTS = re.compile(r"status|state|monitor|publisher|sensor|encoder|odom|wind", re.IGNORECASE)
 """Names of unsupported plugins without commands, although their tags contain joints or forces."""
+_TRAVELS = re.compile(r"follow|vehicle|navigat|patrol|waypoint|locomot|walk|driver", re.IGNORECASE)
+"""Names of unsupported plugins that move something."""
 _MANAGER = re.compile(r"ros2?_control")
 _COMMANDS = re.compile(r"gain|force|torque|thrust|motor|rotor|cmd_?vel", re.IGNORECASE)
 """Names of the tags of unsupported plugins that move something."""
@@ -39,11 +41,14 @@ def movers(verdict: Verdict, robot: RobotDescription) -> list[str]:
 def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     """Plugins that should move the robot or its joints, without controller managers.
 
-    An unsupported plugin also counts if its tags contain the name of a movable joint, or if a tag
-    is named after gains, forces, motors or velocity commands, unless its own name says that it only
-    measures.
+    An unsupported plugin also counts if its tags contain the name of a movable joint, if a tag is
+    named after gains, forces, motors or velocity commands, or if nothing else moves a robot with
+    wheels, unless its own name says that it only measures.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
+    waits = _has_wheels(robot) and not any(
+        is_known(tag) and is_mover(tag.filename) for tag in robot.plugins
+    )
     return [
         tag
         for tag in robot.plugins
@@ -51,7 +56,7 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         and not _RECORDS.search(name)
         and (
             _MOVES.search(name)
-            or (not is_known(tag) and not reports(name) and _acts(tag.element, joints))
+            or (_may_move(tag) and (waits or _TRAVELS.search(name) or _acts(tag.element, joints)))
         )
     ]
 
@@ -72,6 +77,17 @@ def managers(robot: RobotDescription, *, jointless: bool = False) -> list[Plugin
 def is_known(tag: PluginTag) -> bool:
     """Whether Cartwheel supports a plugin."""
     return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
+
+
+def _may_move(tag: PluginTag) -> bool:
+    """Whether a plugin is not supported, and its name does not say that it only measures."""
+    name = short_name(tag.filename)
+    return not is_known(tag) and not reports(name) and name not in WITHOUT_EFFECT
+
+
+def _has_wheels(robot: RobotDescription) -> bool:
+    """Whether several joints turn without limits."""
+    return sum(joint.turns for joint in robot.joints) > 1
 
 
 def reports(name: str) -> bool:

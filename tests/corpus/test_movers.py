@@ -1,0 +1,36 @@
+"""Unsupported plugins that may be what moves a robot."""
+
+import pytest
+from tests.corpus.carts import cart, plugin, written
+
+from cartwheel.codes.devices import PLUGIN_UNKNOWN
+from cartwheel.corpus import try_robot
+
+OTHER = '<gazebo><plugin name="x" filename="{}"><target>person</target></plugin></gazebo>'
+
+
+@pytest.mark.parametrize("name", ["libmy_follower.so", "libown_thing.so"])
+def test_an_unsupported_plugin_may_be_what_moves_a_robot_with_wheels(tmp_path, name):
+    verdict = try_robot(written(tmp_path, cart(), OTHER.format(name)), standing=1.0)
+    assert verdict.outcome == "unknown"
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code) == ("plugin", PLUGIN_UNKNOWN)
+    assert name in fault.reason.message
+    assert verdict.should_move
+
+
+def test_an_unsupported_plugin_of_a_robot_that_a_drive_moves_is_no_fault(tmp_path):
+    path = written(tmp_path, cart(), plugin(), OTHER.format("libown_thing.so"))
+    assert try_robot(path, standing=1.0).good
+
+
+def test_a_plugin_named_after_following_moves_a_model_whose_wheels_do_not_turn(tmp_path):
+    box = cart().replace('type="continuous"', 'type="fixed"')
+    verdict = try_robot(written(tmp_path, box, OTHER.format("libmy_follower.so")), standing=1.0)
+    assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
+
+
+@pytest.mark.parametrize("name", ["libmy_sensor.so", "libgazebo_ros_p3d.so"])
+def test_what_measures_moves_no_robot(tmp_path, name):
+    verdict = try_robot(written(tmp_path, cart(), OTHER.format(name)), standing=1.0)
+    assert not verdict.should_move
