@@ -15,7 +15,7 @@ def test_an_unsupported_plugin_may_be_what_moves_a_robot_with_wheels(tmp_path, n
     assert verdict.outcome == "unknown"
     (fault,) = verdict.faults
     assert (fault.test, fault.code) == ("plugin", PLUGIN_UNKNOWN)
-    assert name in fault.reason.message
+    assert fault.reason.values["name"] == name
     assert verdict.should_move
 
 
