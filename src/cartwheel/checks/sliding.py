@@ -10,6 +10,7 @@ import numpy as np
 from cartwheel.checks.resting import Surfaces, starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import (
+    axle_of,
     lowest,
     wheel_axis,
     wheel_links,
@@ -98,7 +99,13 @@ def _loads(x: Floats, y: Floats, center: tuple[float, float]) -> Floats:
 
 
 def turn_ratio(
-    robot: Robot, left: Sequence[Joint], right: Sequence[Joint], axle: Floats, rim: float
+    robot: Robot,
+    left: Sequence[Joint],
+    right: Sequence[Joint],
+    axle: Floats,
+    rim: float,
+    *,
+    dragged: bool = False,
 ) -> float | None:
     """Turn rate of a base whose left and right wheels are driven for a turn of 1 rad/s.
 
@@ -108,9 +115,10 @@ def turn_ratio(
         right: Driven joints of the right wheels.
         axle: Direction of the axles in the model frame, a unit vector.
         rim: Speed of the rims, m/s.
+        dragged: Whether other parts of the base slide, although no wheel has to.
 
     Returns:
-        None if no wheel has to slide in a turn, or if the contacts are unknown.
+        None if nothing has to slide in a turn, or if the contacts are unknown.
     """
     center = center_of_mass(robot.description, starting_poses(robot))
     driven = [*left, *right]
@@ -133,7 +141,7 @@ def turn_ratio(
         for joint in driven
     ]
     others = list(_others(robot, driven, wheels, axle, min(bottoms)))
-    skids = any(each.friction[0] < each.friction[1] for each in others)
+    skids = any(each.friction[0] < each.friction[1] or dragged for each in others)
     spread = {round(each.x, 3) for each in contacts}
     # What another plugin drives is unknown here.
     elsewhere = robot.driven - {joint.name for joint in driven}
@@ -147,6 +155,28 @@ def turn_ratio(
         return None
     motion = base_motion([*contacts, *others], (_ahead(axle, center), float(axle @ center)))
     return abs(float(motion[2]))
+
+
+def dragged_turn(robot: Robot) -> float | None:
+    """Turn rate of a base that drags parts over the ground, relative to that of its wheels.
+
+    Returns:
+        None if it is unknown.
+    """
+    for left, right in robot.sides:
+        if not left or not right or not {*left, *right} <= robot.joints.keys():
+            continue
+        axle = axle_of(robot, left, right, beside=True)
+        ours, theirs = ([robot.joints[name] for name in side] for side in (left, right))
+        if not {each.child for each in (*ours, *theirs)} <= robot.placed:
+            continue
+        first, second = (
+            np.mean([wheel_tread(robot, each) for each in side], axis=0) for side in (ours, theirs)
+        )
+        track = abs(float((first - second) @ axle))
+        if track > 0:
+            return turn_ratio(robot, ours, theirs, axle, track / 2, dragged=True)
+    return None
 
 
 def is_held(robot: Robot, driven: Sequence[Joint]) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from cartwheel.codes import robot, running
@@ -11,7 +11,7 @@ from cartwheel.corpus.faults import most_severe
 from cartwheel.corpus.movers import reports
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Code, Diagnostic
 
 _AGREES = 0.15
 """Relative tolerance between a measured velocity and the one that a mistake predicts."""
@@ -22,6 +22,8 @@ _BRAKED = 0.15
 """Largest part of the speed that a sliding caster takes while the base drives straight ahead."""
 _PULLED = 0.5
 """Largest part of the turn rate for which wheels that point to one side account."""
+_TOO_FAST = 0.05
+"""Relative error from which a base is too fast."""
 _STUCK = 0.1
 """Predicted part of the turn rate up to which a robot may as well not turn at all."""
 _FLYWHEEL = 20.0
@@ -90,8 +92,9 @@ def _cause(
         if (factor := _factor(each, turning)) is not None
     }
     if robot.SKID_STEERING in factors:
-        # Its ratio contains the stated separation.
+        # Its ratio contains the stated separation, and the parts that the base drags.
         factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
+        factors.pop(robot.CASTER_FRICTION, None)
     skids, slowest = factors.get(robot.SKID_STEERING, (None, 1.0))
     if skids is not None and slowest < ratio < max(1.0, _rolling(skids)):
         # Fewer wheels than predicted carry the robot, or the friction depends on the direction.
@@ -106,6 +109,8 @@ def _cause(
     if factors and _follows(ratio, product):
         # Of several mistakes, the one that contributes most to the error.
         return max(factors.values(), key=lambda pair: (pair[1] - 1.0) * (ratio - 1.0))[0]
+    if (combined := _combined(factors, ratio)) is not None:
+        return combined
     if arc and factors:
         # Steering and rim speeds contradict each other, so the wheels slide.
         expected = [1.0, *(factor for _, factor in factors.values())]
@@ -127,6 +132,25 @@ def _cause(
         # A caster may also brake a base that drives straight ahead.
         codes |= {robot.CASTER_FRICTION}
     return most_severe(each for each in found if each.code in codes and not _only_measures(each))
+
+
+def _combined(factors: Mapping[Code, tuple[Diagnostic, float]], ratio: float) -> Diagnostic | None:
+    """The reason for a velocity that follows from a wrong size and from parts that are dragged.
+
+    What a base drags slows it down by up to the predicted factor. It is the size that makes a base
+    too fast, whatever slows it down. Otherwise, it is what contributes more.
+    """
+    drags, most = factors.get(robot.CASTER_FRICTION, (None, 1.0))
+    sizes = [each for code, each in factors.items() if code is not robot.CASTER_FRICTION]
+    size = math.prod(factor for _, factor in sizes)
+    if not sizes or size <= 0.0 or not 0.0 < ratio < size:
+        return None
+    largest = max(sizes, key=lambda pair: (pair[1] - 1.0) * (size - 1.0))[0]
+    if ratio > 1.0 + _TOO_FAST:
+        return largest
+    if drags is None or ratio < size * most * (1.0 - _AGREES):
+        return None
+    return largest if abs(math.log(size)) >= abs(math.log(ratio / size)) else drags
 
 
 def _pulls(each: Diagnostic, ratio: float) -> bool:
@@ -192,6 +216,9 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
     if finding.code is robot.SKID_STEERING and turning:
         ratio = values.get("ratio")
         return ratio if isinstance(ratio, float) else None
+    if finding.code is robot.CASTER_FRICTION and turning:
+        ratio = values.get("ratio")
+        return ratio if isinstance(ratio, float) and 0.0 < ratio < 1.0 else None
     if finding.code is robot.STEERING_REVERSED and turning:
         return -1.0
     if finding.code is robot.WHEELS_SWAPPED:

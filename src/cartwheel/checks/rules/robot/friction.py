@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
-from cartwheel.checks.sliding import is_held, rolls_only_forward
+from cartwheel.checks.sliding import dragged_turn, is_held, rolls_only_forward
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import ROUND, lowest, wheel_joints, wheel_links, wheel_widths
 from cartwheel.codes import robot as robot_codes
@@ -59,7 +59,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
         wheels = {name for joint in driven for name in wheel_links(robot, joint)}
         if not wheels or _names_nothing(subject):
             continue
-        weak = is_held(robot, driven)
+        weak, turn = is_held(robot, driven), dragged_turn(robot)
         for link in robot.description.links:
             holder = robot.inbound.get(link.name)
             if "caster" not in link.name.lower() or holder is None:
@@ -75,6 +75,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 link,
                 link.collisions[0],
                 f'the caster "{link.name}" cannot {lacks}',
+                turn=turn,
                 holds=weak and not rolls,
                 instead=f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>',
                 hint="Add these tags to the robot, or change the existing values.",
@@ -91,6 +92,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 link,
                 collision,
                 f'the sphere of link "{link.name}" is a caster that cannot roll',
+                turn=turn,
                 holds=weak,
                 hint=f"{own} <mu1> and <mu2> of this link to 0.",
             )
@@ -102,11 +104,16 @@ def _braking(
     collision: Collision,
     problem: str,
     *,
+    turn: float | None,
     holds: bool,
     instead: str = "",
     hint: str,
 ) -> Iterator[Diagnostic]:
-    """The diagnostic for a part that brakes the robot; `instead` and `hint` are those for URDF."""
+    """The diagnostic for a part that brakes the robot.
+
+    `turn` is the turn rate with all such parts, relative to that of the wheels. `instead` and
+    `hint` are those for URDF.
+    """
     mu = collision.surface.mu1
     if not _brakes(mu):
         return
@@ -114,7 +121,7 @@ def _braking(
     yield robot_codes.CASTER_FRICTION.diagnostic(
         message=f"{problem}, and its friction coefficient is {_shown(mu)}{_STUCK if holds else ''}",
         severity="warning" if holds else None,
-        values={"link": link.name, "friction": mu, "holds": holds},
+        values={"link": link.name, "friction": mu, "holds": holds, "ratio": turn},
         origin=collision.origin,
         instead="" if in_sdf else instead,
         hint=_IN_SDF if in_sdf else hint,

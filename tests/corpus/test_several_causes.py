@@ -1,0 +1,61 @@
+"""Mistakes that together explain how a base moves."""
+
+import pytest
+from tests.corpus.carts import cart, plugin, written
+
+from cartwheel.codes.robot import CASTER_FRICTION, WHEEL_SEPARATION_MISMATCH
+from cartwheel.corpus import try_robot
+from cartwheel.corpus.drive_causes import cause_of_drive
+
+
+def dragging(friction: float) -> str:
+    """A cart that rests more on one caster behind it, which does not roll, than on its wheels."""
+    text = cart(friction)
+    front, back = text.index('<link name="front">'), text.index('<link name="back">')
+    text = text[:front] + text[back:].replace("back", "caster")
+    return text.replace("<inertial>", '<inertial><origin xyz="-0.1 0 0"/>', 1)
+
+
+@pytest.mark.parametrize(
+    ("separation", "reason"),
+    [
+        (0.2, CASTER_FRICTION),
+        # Too fast, although the caster brakes.
+        (0.4, WHEEL_SEPARATION_MISMATCH),
+        # Too slow for both reasons, of which the separation contributes more.
+        (0.1, WHEEL_SEPARATION_MISMATCH),
+    ],
+)
+def test_a_wrong_separation_and_a_caster_that_is_dragged(tmp_path, separation, reason):
+    verdict = try_robot(written(tmp_path, dragging(0.5), plugin(separation)), standing=1.0)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("turn", reason, "file")
+    (drive,) = verdict.drives
+    assert 0.6 < (1 + drive.error_turn) / (separation / 0.2) < 0.9
+
+
+SEPARATION = WHEEL_SEPARATION_MISMATCH.diagnostic("", values={"stated": 0.4, "measured": 0.2})
+HALF = WHEEL_SEPARATION_MISMATCH.diagnostic("", values={"stated": 0.1, "measured": 0.2})
+CASTER = CASTER_FRICTION.diagnostic("", values={"ratio": 0.4})
+LOOSE = CASTER_FRICTION.diagnostic("", values={"ratio": None})
+
+
+@pytest.mark.parametrize(
+    ("found", "ratio", "reason"),
+    [
+        ([CASTER, SEPARATION], 1.6, SEPARATION),
+        ([LOOSE, SEPARATION], 1.6, SEPARATION),
+        ([SEPARATION], 1.6, SEPARATION),
+        ([CASTER, SEPARATION], 0.85, CASTER),
+        ([CASTER, HALF], 0.3, HALF),
+        ([CASTER, HALF], 0.2, CASTER),
+        # Slower than both together.
+        ([HALF], 0.2, None),
+        # Nothing brakes a base that is exactly as fast as its size says.
+        ([CASTER, SEPARATION], 2.0, SEPARATION),
+        # Faster than the size says.
+        ([SEPARATION], 3.0, None),
+    ],
+)
+def test_a_size_and_a_brake_are_combined(found, ratio, reason):
+    assert cause_of_drive(found, ratio, turning=True) is reason
