@@ -213,3 +213,13 @@ def test_the_quaternion_of_a_pose_becomes_a_unit_quaternion():
         world.model("post").pose = zero
     with raises(OPTION_INVALID):
         g.Pose((0.0, 0.0, 0.0), ("a", 0.0, 0.0, 1.0))
+
+
+@given(st.lists(st.tuples(VECTOR, VECTOR), min_size=1, max_size=5))
+def test_cross_products_of_rows_have_the_bits_of_numpy(pairs):
+    one, other = np.array([a for a, _ in pairs]), np.array([b for _, b in pairs])
+    assert np.array_equal(g.cross_rows(one, other), np.cross(one, other))
+    assert np.array_equal(g.cross_rows(one[0], other), np.cross(one[0], other))
+    assert np.array_equal(g.cross_rows(one[:, None], other), np.cross(one[:, None], other))
+    single = one.astype(np.float32)
+    assert g.cross_rows(single, single).dtype == np.float32

@@ -4,6 +4,7 @@ import pytest
 
 from cartwheel.codes import devices, running
 from cartwheel.description import load_text
+from cartwheel.dialects import registry
 from cartwheel.errors import CartwheelError
 from cartwheel.session import Session
 
@@ -143,3 +144,22 @@ def test_a_plugin_that_names_what_is_not_there_costs_itself_where_that_is_wanted
     assert reported.values["cause"] == devices.PLUGIN_JOINT_UNKNOWN.number
     assert reported.origin is not None
     session.close()
+
+
+def test_models_without_plugins_are_not_looked_for_in_their_world(monkeypatch):
+    """Each search takes the more time the more models the world has."""
+    searches = []
+    original = registry._is_of_world
+
+    def counted(part):
+        searches.append(part.name)
+        return original(part)
+
+    monkeypatch.setattr(registry, "_is_of_world", counted)
+    system = '<plugin filename="gz-sim-joint-state-publisher-system" name="p"/>'
+    models = "".join(
+        f'<model name="m{number}"><link name="l"/>{system if number == 7 else ""}</model>'
+        for number in range(20)
+    )
+    Session(load_text(f'<sdf version="1.6"><world name="w">{models}</world></sdf>')).close()
+    assert searches == ["m7"]

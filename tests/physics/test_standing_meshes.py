@@ -162,10 +162,10 @@ def test_a_convex_mesh_stays_one_hull_and_one_that_moves_too(make, tmp_path, rin
 def test_a_surface_of_too_many_facets_is_reported(make, ring, monkeypatch):
     from cartwheel.description.meshes import loading, standing
 
-    loading._standing.cache_clear()
+    loading._standing.clear()
     monkeypatch.setattr(standing, "MOST_PIECES", 10)
     world = make.world(static_mesh(make, ring), ground=None)
-    loading._standing.cache_clear()
+    loading._standing.clear()
     assert world.session.simulation.model.ngeom == 1
     assert coded(world.session, PHYSICS_SETTING_IGNORED, setting=SURFACE)
 

@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
+from cartwheel.description.meshes import MeshError, surface_of
 from cartwheel.description.model import Collision, Mesh, Shape, Visual
 from cartwheel.description.shapes.triangles import triangles_of
 from cartwheel.geometry import Pose, matrix_from_quat
@@ -80,7 +80,7 @@ def _triangles(shape: Shape) -> tuple[Floats, Ints] | None:
     if not isinstance(shape, Mesh):
         return triangles_of(shape)
     try:
-        vertices, faces = convex_hull_input(load_mesh(shape))
+        vertices, faces = surface_of(shape)
     except MeshError:
         return None
     return vertices.astype(np.float64), faces.astype(np.int32)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from functools import partial
+from operator import is_
 
 from cartwheel.codes import devices
 from cartwheel.component import Shared
@@ -60,12 +62,12 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
     pairs: list[tuple[PluginTag, Sensor | None]] = [(tag, None) for tag in part.description.plugins]
     pairs += [(tag, sensor) for sensor in sensors for tag in sensor.plugins]
     systems = {short_name(tag.filename) for tag in (*part.world.plugins, *part.description.plugins)}
-    in_world = any(model is part.description for model in part.world.models)
     more = shared.get(PluginFiles).classes
     try:
         for tag, sensor in pairs:
             plugin = plugin_named(tag.filename, more)
-            own_system = in_world and short_name(tag.filename).startswith("gz-sim-")
+            # In this order: a world may have thousands of models without plugins.
+            own_system = short_name(tag.filename).startswith("gz-sim-") and _is_of_world(part)
             if plugin is None and short_name(tag.filename) in BUILT_IN:
                 continue
             if plugin is None and short_name(tag.filename) in WITHOUT_EFFECT:
@@ -93,6 +95,11 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             created.close()
         raise
     return [*plugins, *effects]
+
+
+def _is_of_world(part: Part) -> bool:
+    """Whether the description of the world contains the model."""
+    return any(map(partial(is_, part.description), part.world.models))
 
 
 def _effects_of_world(part: Part, shared: Shared, more: Plugins) -> Iterator[Behaviour]:

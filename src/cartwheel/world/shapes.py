@@ -255,12 +255,12 @@ def _mesh(shape: Mesh | Cone | Polyline, assets: Assets) -> str:
         case Polyline():
             return assets.mesh(shape, *outline.solid(shape))
         case Mesh():
-            return assets.mesh(("hull", shape), *meshes.convex_hull_input(meshes.load_mesh(shape)))
+            return assets.mesh(("hull", shape), *meshes.surface_of(shape))
 
 
 def _plate(shape: Mesh) -> Any:
     """The corners of a flat mesh, extruded to a plate because it has no hull; otherwise None."""
-    vertices, _ = meshes.convex_hull_input(meshes.load_mesh(shape))
+    vertices, _ = meshes.surface_of(shape)
     centred = np.asarray(vertices, dtype=np.float64)
     centred = centred - centred.mean(axis=0)
     _, extents, axes = np.linalg.svd(centred, full_matrices=False)

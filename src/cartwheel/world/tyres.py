@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
+from cartwheel.description.meshes import MeshError, surface_of
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -187,7 +187,7 @@ def lowest(shape: Shape, pose: Pose) -> float:
             depth = radius * math.hypot(*down[:2]) + abs(float(down[2])) * length / 2
         case Mesh():
             try:
-                points, _ = convex_hull_input(load_mesh(shape))
+                points, _ = surface_of(shape)
             except MeshError:
                 return math.inf  # reported when the shape is created
             depth = -float((points @ down).min()) if len(points) else -math.inf
@@ -209,7 +209,7 @@ def _on(axle: Axle, shape: Cylinder, pose: Pose) -> bool:
 def _round_mesh(mesh: Mesh, pose: Pose, axle: Axle) -> tuple[Shape, Pose] | None:
     """The ellipsoid for a mesh that is round about the axle; None for other meshes."""
     try:
-        points, _ = convex_hull_input(load_mesh(mesh))
+        points, _ = surface_of(mesh)
     except MeshError:
         return None  # reported when the shape is created
     if not len(points):

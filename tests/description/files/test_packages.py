@@ -8,6 +8,7 @@ from tests.coded import named, raises
 
 from cartwheel.codes import files
 from cartwheel.description.files import package_folders, package_search
+from cartwheel.description.files import packages as packages_module
 from cartwheel.description.files.package_folders import share
 from cartwheel.description.files.packages import Packages
 from cartwheel.errors import DescriptionError, Origin
@@ -365,3 +366,37 @@ def test_a_file_of_another_computer_is_not_searched_outside_its_package(tmp_path
     with pytest.raises(DescriptionError):
         found.resolve(uri, HERE, what="mesh")
     assert not found.found_elsewhere
+
+
+def test_thousands_of_references_search_the_folders_once(tmp_path, monkeypatch):
+    searched = []
+    original = packages_module.package_above
+
+    def counted(folder):
+        searched.append(folder)
+        return original(folder)
+
+    monkeypatch.setattr(packages_module, "package_above", counted)
+    for number in range(3):
+        (tmp_path / f"{number}.stl").touch()
+    found = packages(tmp_path / "a.world", package_path=[tmp_path])
+    other = Origin(file=str(tmp_path / "models/b.sdf"), line=1)
+    for _ in range(100):
+        for number in range(3):
+            for origin in (None, other):
+                assert found.resolve(f"{number}.stl", origin) == tmp_path / f"{number}.stl"
+    assert len(searched) <= 3
+
+
+def test_a_file_that_is_removed_is_missed(tmp_path):
+    near, far = tmp_path / "near/a.stl", tmp_path / "far/a.stl"
+    for file in (near, far):
+        file.parent.mkdir()
+        file.touch()
+    found = packages(tmp_path / "near/a.world", package_path=[far.parent])
+    assert found.resolve("a.stl") == near
+    near.unlink()
+    assert found.resolve("a.stl") == far
+    far.unlink()
+    with raises(files.FILE_MISSING):
+        found.resolve("a.stl")

@@ -82,7 +82,7 @@ def test_a_damaged_file_is_an_error_at_once(tmp_path, data):
     mesh = write(tmp_path, "t.stl", data)
     expected = error_of(load_mesh, mesh)
     assert expected is not None
-    loading._read.cache_clear()
+    loading._files.clear()
     assert error_of(check_mesh, mesh) == expected
 
 
@@ -116,7 +116,7 @@ def test_files_changed_at_random_have_the_same_errors(tmp_path):
             tmp_path, f"{number}.stl", bytes(data[: choice.choice([len(data)] * 3 + [99])])
         )
         found = error_of(check_mesh, mesh)
-        loading._read.cache_clear()
+        loading._files.clear()
         assert found == error_of(load_mesh, mesh)
         wrong += found is not None
         if found is None and (size := known_size(mesh)) is not None:

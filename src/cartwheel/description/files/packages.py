@@ -15,10 +15,10 @@ from urllib.parse import unquote
 
 from cartwheel.codes import files as codes
 from cartwheel.codes.tags import VALUE_INVALID
-from cartwheel.description.elements import numbers
 from cartwheel.description.files import fuel
 from cartwheel.description.files.install_rules import source_of
-from cartwheel.description.files.missing_packages import Advice, how_to_install
+from cartwheel.description.files.missing_files import advice_about, missing
+from cartwheel.description.files.missing_packages import how_to_install
 from cartwheel.description.files.other_places import FIND, how_to_refer_to, other_places
 from cartwheel.description.files.package_folders import (
     around,
@@ -28,7 +28,7 @@ from cartwheel.description.files.package_folders import (
     package_name,
     stand_in_name,
 )
-from cartwheel.description.files.package_search import RESOURCES, PackageSearch, listed
+from cartwheel.description.files.package_search import RESOURCES, PackageSearch
 from cartwheel.description.files.readable_files import (
     NAME_IT,
     Reach,
@@ -69,6 +69,11 @@ class Packages:
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
         self._search = PackageSearch(self.file, self.package_path, self._environment)
+        # A world may refer to a file thousands of times.
+        self._searched_after: dict[tuple[Path, ...], tuple[Path, ...]] = {}
+        """The answers of `_further`."""
+        self._resolved: dict[tuple[str, str, bool], Path] = {}
+        """The answers of `resolve`, by the URI, the file that contains it, and `folder`."""
         self.stand_ins: dict[str, Origin | None] = {}
         """The packages whose stand-ins were read, with the first element that refers to each."""
         self.found_elsewhere: dict[str, tuple[Path, Origin | None]] = {}
@@ -88,7 +93,7 @@ class Packages:
         """
         if (found := self.found(name)) is None:
             text, advice = f'the package "{name}" was not found', self._search.package_advice(name)
-            raise _missing("package", name, text, origin, advice)
+            raise missing("package", name, text, origin, advice)
         return found
 
     def found(self, name: str) -> Path | None:
@@ -112,7 +117,7 @@ class Packages:
         found = self._search.model(name)
         if found is None:
             message = f'the model "{name}" was not found'
-            raise _missing("model", name, message, origin, self._search.model_advice(name))
+            raise missing("model", name, message, origin, self._search.model_advice(name))
         return found
 
     def resolve(
@@ -137,8 +142,24 @@ class Packages:
         Raises:
             DescriptionError: The file was not found; the hint lists the searched folders.
         """
+        question = (uri, origin.file if origin is not None else "", folder)
+        before = self._resolved.get(question)
+        if before is not None and (is_file(before) or (folder and is_dir(before))):
+            return before
+        # Keys in their order. Most files are at the first place: the others are not looked up.
+        candidates: dict[Path, None] = {}
         try:
-            candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
+            for path in self._candidates(uri.strip(), origin):
+                if path in candidates:
+                    continue
+                candidates[path] = None
+                for each in _unquoted(path):
+                    # Without permission to read a file, its existence is not revealed.
+                    if self.reach is not None and not self.may_read(each):
+                        continue
+                    if is_file(each) or (folder and each == path and is_dir(each)):
+                        self._resolved[question] = each
+                        return each
         except DescriptionError as error:
             if error.code is not codes.FILE_MISSING:
                 raise
@@ -146,13 +167,6 @@ class Packages:
             if other is None:
                 raise
             return other
-        for path in candidates:
-            for each in dict.fromkeys((path, Path(unquote(str(path))))):
-                # Without permission to read a file, its existence is not revealed.
-                if self.reach is not None and not self.may_read(each):
-                    continue
-                if is_file(each) or (folder and each == path and is_dir(each)):
-                    return each
         other = self.elsewhere(uri, origin, without=without)
         if other is not None:
             return other
@@ -174,8 +188,9 @@ class Packages:
                     f"the {what}"
                 )
                 known = self._search.package_advice(package)
-                raise _missing("package", package, message, origin, known)
-        raise _missing(what, uri, f'the {what} "{uri}" does not exist', origin, _absent(candidates))
+                raise missing("package", package, message, origin, known)
+        near = advice_about([*candidates])
+        raise missing(what, uri, f'the {what} "{uri}" does not exist', origin, near)
 
     def elsewhere(
         self, uri: str, origin: Origin | None, *, without: Collection[str] = ()
@@ -338,12 +353,23 @@ class Packages:
         folders = [self.folder]
         if origin is not None and not origin.file.startswith("<"):
             folders.insert(0, Path(origin.file).absolute().parent)
-        # A package with gazebo_media_path exports is itself in GAZEBO_RESOURCE_PATH.
-        above = [root for root in map(package_above, folders) if root is not None]
-        for variable in RESOURCES:
-            folders += self._search.paths(variable)
-        folders += above
-        yield from dict.fromkeys(folder / given for folder in (*folders, *self.package_path))
+        yield from dict.fromkeys(folder / given for folder in folders)
+        yield from (folder / given for folder in self._further(tuple(folders)))
+
+    def _further(self, folders: tuple[Path, ...]) -> tuple[Path, ...]:
+        """The folders in which a relative path is searched after some folders."""
+        if folders not in self._searched_after:
+            # A package with gazebo_media_path exports is itself in GAZEBO_RESOURCE_PATH.
+            above = [root for root in map(package_above, folders) if root is not None]
+            found = [path for variable in RESOURCES for path in self._search.paths(variable)]
+            self._searched_after[folders] = (*found, *above, *self.package_path)
+        return self._searched_after[folders]
+
+
+def _unquoted(path: Path) -> tuple[Path, ...]:
+    """A path, and the one that is meant if it is part of a URI with characters such as ``%20``."""
+    text = str(path)
+    return (path, Path(unquote(text))) if "%" in text else (path,)
 
 
 def _is_special(path: Path) -> bool:
@@ -352,39 +378,3 @@ def _is_special(path: Path) -> bool:
         return path.exists() and not path.is_file()
     except (OSError, ValueError):
         return False
-
-
-def _missing(
-    kind: str, name: str, message: str, origin: Origin | None, advice: Advice
-) -> DescriptionError:
-    """The error for a file, package or model that does not exist.
-
-    Args:
-        kind: What it is.
-        name: The name in the file.
-        message: The error's message.
-        origin: The element with the name.
-        advice: What to do.
-    """
-    return DescriptionError(
-        message,
-        code=codes.FILE_MISSING,
-        origin=origin,
-        hint=advice.hint,
-        values={"kind": kind, "name": name, "meant": advice.meant},
-    )
-
-
-def _absent(candidates: Sequence[Path]) -> Advice:
-    """The likely file name, and a hint with the searched locations."""
-    for path in candidates:
-        try:
-            names = [
-                entry.name for _, entry in zip(range(2000), path.parent.iterdir(), strict=False)
-            ]
-        except (OSError, ValueError):
-            continue
-        near = numbers.likely(path.name, names)
-        if near:
-            return Advice(near, f'Did you mean "{near}"? Searched: {listed(candidates)}.')
-    return Advice("", f"Searched: {listed(candidates)}.")

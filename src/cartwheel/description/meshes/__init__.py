@@ -7,6 +7,7 @@ from cartwheel.description.meshes.loading import (
     load_mesh,
     mesh_notes,
     standing_parts,
+    surface_of,
 )
 from cartwheel.description.meshes.submesh import MeshError, Submesh
 
@@ -19,4 +20,5 @@ __all__ = [
     "load_mesh",
     "mesh_notes",
     "standing_parts",
+    "surface_of",
 ]

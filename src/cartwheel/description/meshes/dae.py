@@ -162,7 +162,8 @@ class _Scene:
             self._geometries[key] = list(self._primitives(geometry))
         geometry_name = geometry.get("name") or geometry.get("id") or node
         linear = transform[:3, :3]
-        if abs(np.linalg.det(linear)) < 1e-30:
+        size = float(np.linalg.det(linear))
+        if abs(size) < 1e-30:
             raise ValueError(f'node "{node}" scales its geometry to zero size')
         for primitive in self._geometries[key]:
             self.triangles += int(np.maximum(primitive.counts - 2, 0).sum())
@@ -182,7 +183,7 @@ class _Scene:
             )
             if submesh is not None:
                 submesh = replace(submesh, geometry=geometry_name)
-                yield submesh if np.linalg.det(linear) > 0 else _turned(submesh)
+                yield submesh if size > 0 else _turned(submesh)
 
     def _look(self, material: str) -> MaterialLook:
         if material not in self._looks:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ from cartwheel.description import model
 from cartwheel.description.files.regular_files import read_regular
 from cartwheel.description.meshes.dae import read_dae
 from cartwheel.description.meshes.generic import read_with_trimesh
+from cartwheel.description.meshes.kept import Kept
 from cartwheel.description.meshes.obj import read_obj
 from cartwheel.description.meshes.standing import Standing, standing_pieces
 from cartwheel.description.meshes.stl import glance, read_stl
@@ -32,6 +32,7 @@ from cartwheel.description.meshes.submesh import (
     Ints,
     MeshError,
     Submesh,
+    memory_of,
     scale_submesh,
     unique_rows,
 )
@@ -47,8 +48,13 @@ __all__ = [
     "load_mesh",
     "mesh_notes",
     "standing_parts",
+    "surface_of",
 ]
 
+_MOST_FILES = 1 << 30
+"""Maximum memory of the cached files, bytes."""
+_MOST_DERIVED = 1 << 28
+"""Maximum memory of cached surfaces, and of cached collision geometry, bytes."""
 _COARSER = "Reduce the mesh, for example with Blender's Decimate modifier."
 
 
@@ -59,6 +65,7 @@ class _Loaded:
         submeshes: The parts, or a function that reads them at the first access.
         notes: See `mesh_notes`.
         size: See `known_size`.
+        memory: The memory of the contents, bytes.
     """
 
     def __init__(
@@ -66,16 +73,33 @@ class _Loaded:
         submeshes: Callable[[], tuple[Submesh, ...]] | tuple[Submesh, ...],
         notes: tuple[str, ...] = (),
         size: float | None = None,
+        *,
+        memory: int,
     ) -> None:
         self._submeshes = submeshes
+        self._named: dict[str, tuple[Submesh, ...]] | None = None
         self.notes = notes
         self.size = size
+        self.memory = memory
 
     @property
     def submeshes(self) -> tuple[Submesh, ...]:
         if callable(self._submeshes):
             self._submeshes = self._submeshes()
         return self._submeshes
+
+    def named(self, name: str) -> tuple[Submesh, ...]:
+        """The parts with a name. Gazebo uses the node's name, or else the geometry's."""
+        if self._named is None:
+            named: dict[str, list[Submesh]] = {}
+            for part in self.submeshes:
+                named.setdefault(part.name, []).append(part)
+            nodes = frozenset(named)
+            for part in self.submeshes:
+                if part.geometry not in nodes:
+                    named.setdefault(part.geometry, []).append(part)
+            self._named = {key: tuple(parts) for key, parts in named.items()}
+        return self._named.get(name, ())
 
 
 def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submesh, ...]:
@@ -91,9 +115,8 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
         MeshError: The file is missing, empty, damaged or in an unsupported format.
     """
     _check_scale(mesh, origin)
-    submeshes = _loaded(mesh.path, origin).submeshes
-    if mesh.submesh is not None:
-        submeshes = _select(mesh, submeshes, origin)
+    loaded = _loaded(mesh.path, origin)
+    submeshes = loaded.submeshes if mesh.submesh is None else _select(mesh, loaded, origin)
     return tuple(scale_submesh(submesh, mesh.scale) for submesh in submeshes)
 
 
@@ -110,7 +133,7 @@ def check_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> None:
     _check_scale(mesh, origin)
     loaded = _loaded(mesh.path, origin)
     if mesh.submesh is not None:
-        _select(mesh, loaded.submeshes, origin)
+        _select(mesh, loaded, origin)
 
 
 def known_size(mesh: model.Mesh) -> float | None:
@@ -153,13 +176,30 @@ def convex_hull_input(submeshes: Sequence[Submesh]) -> tuple[Floats, Ints]:
     """
     if not submeshes:
         return np.zeros((0, 3), dtype=np.float32), np.zeros((0, 3), dtype=np.int32)
-    offsets = np.cumsum([0, *(len(part.vertices) for part in submeshes)])
-    vertices = np.concatenate([part.vertices for part in submeshes])
-    faces = np.concatenate(
-        [part.faces + offset for part, offset in zip(submeshes, offsets, strict=False)]
-    )
+    vertices, faces = submeshes[0].vertices, submeshes[0].faces
+    if len(submeshes) > 1:
+        offsets = np.cumsum([0, *(len(part.vertices) for part in submeshes)])
+        vertices = np.concatenate([part.vertices for part in submeshes])
+        faces = np.concatenate(
+            [part.faces + offset for part, offset in zip(submeshes, offsets, strict=False)]
+        )
     first, inverse = unique_rows(vertices)
     return vertices[first], inverse[faces].astype(np.int32)
+
+
+def surface_of(mesh: model.Mesh) -> tuple[Floats, Ints]:
+    """The surface of a whole mesh, as from `convex_hull_input`, in read-only arrays.
+
+    Raises:
+        MeshError: As `load_mesh`.
+    """
+    return _surfaces.get((mesh, _changed(mesh)), lambda: _surface(mesh))
+
+
+def _surface(mesh: model.Mesh) -> tuple[Floats, Ints]:
+    vertices, faces = convex_hull_input(load_mesh(mesh))
+    vertices.flags.writeable = faces.flags.writeable = False
+    return vertices, faces
 
 
 def standing_parts(mesh: model.Mesh) -> Standing:
@@ -168,24 +208,32 @@ def standing_parts(mesh: model.Mesh) -> Standing:
     Raises:
         MeshError: As `load_mesh`.
     """
-    return _standing(mesh, mesh.path.stat().st_mtime_ns)
+    return _standing.get((mesh, _changed(mesh)), lambda: standing_pieces(*surface_of(mesh)))
 
 
-@lru_cache(maxsize=1024)  # a furnished house has a hundred meshes, and each spawn needs them all
-def _standing(mesh: model.Mesh, _mtime_ns: int) -> Standing:
-    return standing_pieces(*convex_hull_input(load_mesh(mesh)))
+def _changed(mesh: model.Mesh) -> int:
+    """When the mesh's file was modified, ns; 0 if it does not exist."""
+    try:
+        return mesh.path.stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
-def _select(
-    mesh: model.Mesh, submeshes: tuple[Submesh, ...], origin: Origin | None
-) -> tuple[Submesh, ...]:
-    # Gazebo uses the node's name.
-    chosen = tuple(part for part in submeshes if part.name == mesh.submesh) or tuple(
-        part for part in submeshes if part.geometry == mesh.submesh
-    )
+_Key = tuple[model.Mesh, int]
+_surfaces: Kept[_Key, tuple[Floats, Ints]] = Kept(
+    _MOST_DERIVED, lambda arrays: sum(each.nbytes for each in arrays)
+)
+_standing: Kept[_Key, Standing] = Kept(
+    _MOST_DERIVED, lambda found: sum(piece.nbytes for piece in found.pieces)
+)
+
+
+def _select(mesh: model.Mesh, loaded: _Loaded, origin: Origin | None) -> tuple[Submesh, ...]:
+    assert mesh.submesh is not None
+    chosen = loaded.named(mesh.submesh)
     if not chosen:
-        assert mesh.submesh is not None
-        known = sorted({name for part in submeshes for name in (part.name, part.geometry)} - {""})
+        parts = loaded.submeshes
+        known = sorted({name for part in parts for name in (part.name, part.geometry)} - {""})
         raise MeshError(
             mesh.path,
             f'the file has no submesh "{mesh.submesh}"',
@@ -204,7 +252,8 @@ def _select(
 def _loaded(path: Path, origin: Origin | None) -> _Loaded:
     try:
         status = path.stat()
-        return _read(path, status.st_mtime_ns, status.st_size)
+        key = (path, status.st_mtime_ns, status.st_size)
+        return _files.get(key, lambda: _read(path, status.st_size))
     except MeshError as error:
         raise MeshError(
             path,
@@ -223,9 +272,11 @@ def _loaded(path: Path, origin: Origin | None) -> _Loaded:
         ) from error
 
 
-@lru_cache(maxsize=256)
-def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
-    """Loads a file; time and size are cache keys, so that a changed file is loaded again."""
+# Time and size are parts of the keys, so that a changed file is loaded again.
+_files: Kept[tuple[Path, int, int], _Loaded] = Kept(_MOST_FILES, lambda loaded: loaded.memory)
+
+
+def _read(path: Path, size: int) -> _Loaded:
     kind = path.suffix.lower().lstrip(".")
     reader = _READERS.get(kind)
     if reader is None:
@@ -251,7 +302,7 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
         least = glance(data, MOST_TRIANGLES) if reader is _stl else None
         if least is not None:
             # Most visuals of a simulation without cameras are never looked at.
-            return _Loaded(lambda: tuple(read_stl(data)), size=least)
+            return _Loaded(lambda: tuple(read_stl(data)), size=least, memory=size)
         submeshes = reader(path, data, notes)
     except (OSError, MemoryError):
         raise
@@ -267,7 +318,7 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
             hint=_COARSER,
             values={"triangles": count, "most": MOST_TRIANGLES},
         )
-    return _Loaded(tuple(submeshes), tuple(notes))
+    return _Loaded(tuple(submeshes), tuple(notes), memory=sum(map(memory_of, submeshes)))
 
 
 def _stl(_path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:

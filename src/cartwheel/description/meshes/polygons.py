@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.geometry import cross_rows
+
 Indices = NDArray[np.int64]
 
 
@@ -27,6 +29,8 @@ def triangulate(counts: Sequence[int] | Indices, positions: NDArray[Any]) -> Ind
             f"the polygons have {int(sizes.sum())} vertices, but the index list has "
             f"{len(positions)} entries"
         )
+    if (sizes == 3).all():
+        return np.arange(len(positions), dtype=np.int64).reshape(-1, 3)
     starts = np.cumsum(sizes) - sizes
     parts: list[Indices] = []
     for size in np.unique(sizes).tolist():
@@ -49,8 +53,8 @@ def _concave(positions: NDArray[Any], begin: Indices, size: int) -> NDArray[np.b
     """Which of several polygons of equal size are concave."""
     points = np.asarray(positions, dtype=np.float64)[begin[:, None] + np.arange(size)]
     edges = np.roll(points, -1, axis=1) - points
-    turns = np.cross(edges, np.roll(edges, -1, axis=1))
-    normal = np.cross(points, np.roll(points, -1, axis=1)).sum(axis=1)
+    turns = cross_rows(edges, np.roll(edges, -1, axis=1))
+    normal = cross_rows(points, np.roll(points, -1, axis=1)).sum(axis=1)
     along = np.einsum("nij,nj->ni", turns, normal)
     tolerance = 1e-9 * np.abs(along).max(axis=1, keepdims=True)
     return np.asarray((along < -tolerance).any(axis=1))

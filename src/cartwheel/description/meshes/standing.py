@@ -12,10 +12,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.description.meshes.surface import (
+    Faces,
+    Points,
+    components,
+    distinct,
+    edges_of,
+    groups,
+    is_closed,
+    numbered,
+    outwards,
+    planes,
+    with_area,
+)
 from cartwheel.description.shapes.outline import Edge, OutlineError, fill
+from cartwheel.geometry import cross, cross_rows
 
-Points = NDArray[np.float64]
-Faces = NDArray[np.int64]
 MOST_PIECES = 6000
 """Maximum pieces per mesh, which take four seconds to build; parts that need more become hulls."""
 _THICKEST, _THINNEST = 0.05, 0.004
@@ -62,51 +74,26 @@ def standing_pieces(vertices: NDArray[np.floating], faces: NDArray[np.integer]) 
         faces: Shape (m, 3), counter-clockwise from outside.
     """
     points = np.asarray(vertices, dtype=np.float64)
-    triangles = _sound(points, np.asarray(faces, dtype=np.int64))
+    triangles = with_area(points, np.asarray(faces, dtype=np.int64))
     if not len(triangles):
         return Standing()
     pieces: list[Points] = []
-    parts = _parts(triangles, len(points))
+    parts = components(triangles, len(points))
     if len(parts) > MOST_PIECES:
         return Standing(hulls=1)
     hulls = 0
     for part in parts:
         slabs = None
-        if np.ptp(points[np.unique(part)], axis=0).max() > _SMALL and not _is_convex(points, part):
+        corners = points[distinct(part)]
+        if np.ptp(corners, axis=0).max() > _SMALL and not _is_convex(points, part, corners):
             pairs = _MOST_SIDE_PAIRS * len(part) // len(triangles)
             slabs = _slabs(*_coarse(points, part), MOST_PIECES - len(pieces), pairs)
             hulls += slabs is None
         one_hull = slabs is None and len(parts) == 1
-        pieces += [points[np.unique(part)]] if slabs is None else slabs
+        pieces += [corners] if slabs is None else slabs
     if one_hull:
         return Standing(hulls=hulls)
     return Standing(tuple(piece for piece in pieces if _is_solid(piece)), hulls)
-
-
-def _sound(points: Points, faces: Faces) -> Faces:
-    """The faces with a nonzero area."""
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    return np.asarray(faces[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10])
-
-
-def _parts(faces: Faces, count: int) -> list[Faces]:
-    """Connected components of the faces."""
-    label = np.arange(count)
-    while True:
-        lowest = label[faces].min(axis=1)
-        before = label.copy()
-        for k in range(3):
-            np.minimum.at(label, faces[:, k], lowest)
-        label = label[label]
-        if (label == before).all():
-            break
-    return [faces[some] for some in _groups(label[faces[:, 0]])]
-
-
-def _groups(label: NDArray[np.int64]) -> list[NDArray[np.int64]]:
-    """Indices grouped by label, in ascending order."""
-    order = np.argsort(label, kind="stable")
-    return np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
 def _coarse(points: Points, faces: Faces) -> tuple[Points, Faces]:
@@ -133,15 +120,14 @@ def _merged(points: Points, faces: Faces, size: float) -> tuple[Points, Faces]:
     merged = cell[place.reshape(faces.shape)]
     first = merged.argmin(axis=1)[:, None]
     turned = np.take_along_axis(merged, (first + np.arange(3)) % 3, axis=1)
-    return middles, _sound(middles, np.unique(turned, axis=0))
+    return middles, with_area(middles, np.unique(turned, axis=0))
 
 
-def _is_convex(points: Points, faces: Faces) -> bool:
-    """Whether a closed surface is convex; an open surface has no inside."""
-    if not _is_closed(faces):
+def _is_convex(points: Points, faces: Faces, corners: Points) -> bool:
+    """Whether a closed surface with some corners is convex; an open surface has no inside."""
+    if not is_closed(faces):
         return False
-    corners = points[np.unique(faces)]
-    normals, origins = _planes(points, _outwards(points, faces)[:: len(faces) // _MOST_ASKED + 1])
+    normals, origins = planes(points, outwards(points, faces)[:: len(faces) // _MOST_ASKED + 1])
     for start in range(0, len(normals), 256):
         block = slice(start, start + 256)
         ahead = normals[block] @ corners.T
@@ -151,45 +137,15 @@ def _is_convex(points: Points, faces: Faces) -> bool:
     return True
 
 
-def _is_closed(faces: Faces) -> bool:
-    """Whether each edge belongs to two faces."""
-    return bool((np.unique(_numbered(_edges(faces)), return_counts=True)[1] == 2).all())
-
-
-def _edges(faces: Faces) -> NDArray[np.int64]:
-    """The edges of all faces, with the lower corner first."""
-    corners = (faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]])
-    return np.sort(np.concatenate(corners), axis=1)
-
-
-def _numbered(edges: NDArray[np.int64]) -> NDArray[np.int64]:
-    """One number per edge, in the same order: sorting numbers is ten times faster."""
-    return np.asarray(edges[:, 0] * (edges.max() + 1) + edges[:, 1])
-
-
-def _outwards(points: Points, faces: Faces) -> Faces:
-    """The faces of a closed surface, counter-clockwise from outside."""
-    a, b, c = (points[faces[:, k]] - points[faces[0, 0]] for k in range(3))
-    volume = float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum())
-    return faces[:, ::-1] if volume < 0 else faces
-
-
-def _planes(points: Points, faces: Faces) -> tuple[Points, Points]:
-    """Unit normal and one point of each face."""
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True), a
-
-
 def _slabs(points: Points, faces: Faces, most: int, pairs: int) -> list[Points] | None:
     """A slab for each convex piece of each flat patch; None if there would be more than `most`.
 
     Also None if tracing a patch's rim, or finding nearby faces, would take too long. If the sides
     would need more than `pairs` pairs of points and nearby faces, they are not oblique.
     """
-    if _is_closed(faces):
-        faces = _outwards(points, faces)
-    normals, origins = _planes(points, faces)
+    if is_closed(faces):
+        faces = outwards(points, faces)
+    normals, origins = planes(points, faces)
     fronts: list[Points] = []
     facing: list[Points] = []
     for patch in _patches(faces, normals, points):
@@ -229,9 +185,9 @@ def _outlines(
     """The convex pieces of a flat patch, and its normal."""
     normal = normals.mean(axis=0)
     normal /= np.linalg.norm(normal)
-    u = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    u = cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
     u /= np.linalg.norm(u)
-    v = np.cross(normal, u)
+    v = cross(normal, u)
     flat = np.column_stack([points @ u, points @ v])
     height = float((origins @ normal).mean())
     pieces = (np.array(piece) for piece in fill(_rim(faces, flat)))
@@ -241,7 +197,7 @@ def _outlines(
 
 def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[np.int64]]:
     """Indices of the faces in each flat patch."""
-    edges = _edges(faces)
+    edges = edges_of(faces)
     owners = np.tile(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))
     edges, owners = edges[order], owners[order]
@@ -258,7 +214,7 @@ def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[
         label = label[label]
         if (label == before).all():
             break
-    for patch in _groups(label):
+    for patch in groups(label):
         corners = points[np.unique(faces[patch])]
         normal = normals[patch].mean(axis=0)
         if np.ptp(corners @ normal) <= _DENT:
@@ -270,7 +226,7 @@ def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[
 def _rim(faces: Faces, flat: Points) -> list[Edge]:
     """The edges that belong to a single face."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    numbers = _numbered(np.sort(edges, axis=1))
+    numbers = numbered(np.sort(edges, axis=1))
     _, first, counts = np.unique(numbers, return_index=True, return_counts=True)
     found = []
     for a, b in edges[first[counts == 1]].tolist():
@@ -303,7 +259,7 @@ def _sides(
     starts, ways, ups, deep, owners = [], [], [], [], []
     for index, (front, normal, thick) in enumerate(zip(fronts, facing, thicknesses, strict=True)):
         along = np.roll(front, -1, axis=0) - front
-        out = np.cross(along, normal)
+        out = cross_rows(along, normal)
         lengths = np.linalg.norm(out, axis=1)
         sound = lengths > 1e-6
         out = out[sound] / lengths[sound, None]
@@ -347,7 +303,7 @@ def _depths(
     """
     a, b, c = (points[faces[:, k]] for k in range(3))
     e1, e2 = b - a, c - a
-    across = np.cross(e1, e2)
+    across = cross_rows(e1, e2)
     lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
     first = np.full(len(starts), 2 * _THICKEST)
     second = first.copy()
@@ -362,7 +318,7 @@ def _depths(
             return None
         along = -normals[block][:, None, :]
         s = starts[block][:, None, :] - a[near][None]
-        turned = np.cross(s, along)
+        turned = cross_rows(s, along)
         with np.errstate(divide="ignore", invalid="ignore"):
             area = -(along * across[near]).sum(axis=2)
             t = (s * across[near]).sum(axis=2) / area

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from cartwheel.codes.files import MESH_UNREADABLE
 from cartwheel.errors import Code, DescriptionError, Origin, Value
+from cartwheel.geometry import cross_rows
 
 if TYPE_CHECKING:
     from cartwheel.description.model import Rgba
@@ -159,6 +160,13 @@ def scale_submesh(submesh: Submesh, scale: tuple[float, float, float]) -> Submes
     )
 
 
+def memory_of(submesh: Submesh) -> int:
+    """The memory of a submesh, bytes; several may share an image."""
+    arrays = (submesh.vertices, submesh.faces, submesh.normals, submesh.uv)
+    image = len(submesh.texture) if isinstance(submesh.texture, bytes) else 0
+    return image + sum(each.nbytes for each in arrays if each is not None)
+
+
 def unique_rows(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Indices of the distinct rows, and for each row the number of its distinct row.
 
@@ -181,9 +189,10 @@ def unique_rows(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 def has_area(points: Floats, triangles: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Which triangles have three different corners that are not on a line."""
-    a, b, c = (points[triangles[:, i]].astype(np.float64) for i in range(3))
-    ab, ac = b - a, c - a
-    doubled = np.linalg.norm(np.cross(ab, ac), axis=1)
+    corners = points[triangles].astype(np.float64)
+    a = corners[:, 0]
+    ab, ac = corners[:, 1] - a, corners[:, 2] - a
+    doubled = np.linalg.norm(cross_rows(ab, ac), axis=1)
     longest = np.maximum(np.einsum("ij,ij->i", ab, ab), np.einsum("ij,ij->i", ac, ac))
     # Relative to the edges, because a mesh in millimetres is scaled later; single precision does
     # not resolve smaller angles.

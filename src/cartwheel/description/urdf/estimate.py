@@ -13,7 +13,7 @@ import numpy as np
 
 from cartwheel.codes import robot
 from cartwheel.description.inertia import impossibility, principal_moments
-from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
+from cartwheel.description.meshes import MeshError, surface_of
 from cartwheel.description.model import Box, Collision, Inertial, Joint, Link, Mesh, Visual
 from cartwheel.description.sdf.links.inertia import WATER, inertial_of
 from cartwheel.description.urdf.context import UrdfContext
@@ -123,7 +123,7 @@ def _solid(part: Collision | Visual) -> Collision | None:
     shape, pose = part.shape, part.pose
     if isinstance(shape, Mesh):
         try:
-            vertices, _ = convex_hull_input(load_mesh(shape))
+            vertices, _ = surface_of(shape)
         except MeshError:
             return None  # reported when the mesh is read for display
         low, high = vertices.min(axis=0).astype(float), vertices.max(axis=0).astype(float)

@@ -174,9 +174,8 @@ class Population:
             PluginError: A plugin's parameters are invalid.
         """
         check_model_name(name)
-        taken = self.residents.keys() | (self._entered or {}).keys()
-        if name in taken:
-            free = free_name(name, taken)
+        if name in self.residents or name in (self._entered or {}):
+            free = free_name(name, self.residents.keys() | (self._entered or {}).keys())
             raise WorldError(
                 f'a model named "{name}" is already in the world',
                 code=world_codes.MODEL_NAME_TAKEN,

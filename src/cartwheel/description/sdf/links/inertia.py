@@ -17,7 +17,7 @@ from cartwheel.description.inertia import (
     made_possible,
     principal_moments,
 )
-from cartwheel.description.meshes import convex_hull_input, load_mesh
+from cartwheel.description.meshes import surface_of
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -213,7 +213,7 @@ def _solid(shape: Shape) -> tuple[float, Array, Array]:
             moments = [side / volume, side / volume]
             moments.append((cylinder * r * r / 2 + ball * 0.4 * r * r) / volume)
         case Mesh():
-            return _mesh(*convex_hull_input(load_mesh(shape)))
+            return _mesh(*surface_of(shape))
         case Polyline():
             return _mesh(*solid(shape))
         case _:
