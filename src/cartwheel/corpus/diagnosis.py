@@ -221,16 +221,16 @@ def _measured(
         yield Fault(test="publish", subject=topic, reason=reason)
     for subject, reason in _held_bases(verdict, description, findings):
         yield Fault(test="drive", subject=subject, reason=reason)
-    pushed = any(drive.follows and drive.turns for drive in verdict.drives)
+    pushed = any(drive.passes for drive in verdict.drives)
     for drive in verdict.drives:
-        if pushed and not (drive.follows and drive.turns) and is_free(said, drive.topic):
+        if pushed and not drive.passes and is_free(said, drive.topic):
             continue
         forward: Diagnostic | None = None
         # A robot that fell cannot drive, nor one that its own wheels throw over.
         unsteady = fallen or flywheel((*said, *findings()), description)
         if not drive.follows:
             found = _explaining((*said, *findings()), verdict, "drive", drive.topic)
-            forward = cause_of_drive(found, 1.0 + drive.error, turning=False)
+            forward = cause_of_drive(found, 1.0 + drive.error)
             yield Fault(test="drive", subject=drive.topic, reason=forward or unsteady)
         if not drive.turns:
             reason = cause_of_drive(
@@ -243,6 +243,10 @@ def _measured(
                 # The radius of wheels that slide counts for the turn rate by an unknown factor.
                 reason = forward if forward.code is robot.WHEEL_DIAMETER_MISMATCH else None
             yield Fault(test="turn", subject=drive.topic, reason=reason or unsteady)
+        if not drive.slides:
+            found = _explaining((*said, *findings()), verdict, "sideways", drive.topic)
+            reason = cause_of_drive(found, 1.0 + drive.error_sideways, sideways=True)
+            yield Fault(test="sideways", subject=drive.topic, reason=reason or unsteady)
     for reach in verdict.reaches:
         if not reach.arrived and _is_started(reach.controller, verdict):
             # A robot that fell may lie on its joints.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import replace
 
 from cartwheel.codes import robot, running
@@ -48,14 +48,21 @@ _DRIVING = frozenset(
     }
 )
 """Mistakes that change a base's velocity by an unknown factor."""
+_SIDEWAYS = _DRIVING | {running.WHEELS_WITHOUT_ROLLERS}
 _TURNING = _DRIVING | {robot.CASTER_FRICTION, running.WHEELS_WITHOUT_ROLLERS}
 
 
 def cause_of_drive(
-    found: Sequence[Diagnostic], ratio: float, *, turning: bool, arc: bool = False
+    found: Sequence[Diagnostic],
+    ratio: float,
+    *,
+    turning: bool = False,
+    sideways: bool = False,
+    arc: bool = False,
 ) -> Diagnostic | None:
     """The mistake that explains why a base moves at a multiple of the commanded velocity."""
-    cause = _cause(found, ratio, turning=turning, arc=arc)
+    codes = _TURNING if turning else _SIDEWAYS if sideways else _DRIVING
+    cause = _cause(found, ratio, codes, turning=turning, arc=arc)
     if cause is not None and cause.code is robot.SKID_STEERING and ratio > 1.0:
         # Wheels that slide slow the robot down, so it is the stated separation that is wrong.
         wrong = (each for each in found if each.code is robot.WHEEL_SEPARATION_MISMATCH)
@@ -84,7 +91,7 @@ def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
 
 
 def _cause(
-    found: Sequence[Diagnostic], ratio: float, *, turning: bool, arc: bool
+    found: Sequence[Diagnostic], ratio: float, codes: Set[Code], *, turning: bool, arc: bool
 ) -> Diagnostic | None:
     factors = {
         each.code: (each, factor)
@@ -119,7 +126,6 @@ def _cause(
     toed = next((each for each in found if turning and arc and _pulls(each, ratio)), None)
     if toed is not None:
         return toed
-    codes = _TURNING if turning else _DRIVING
     if 0.0 < ratio < 1.0:
         codes |= {robot.PLANAR_FRICTION}
         if turning and skids is None:

@@ -15,6 +15,7 @@ Test = Literal[
     "publish",
     "drive",
     "turn",
+    "sideways",
     "reach",
     "spin",
     "fly",
@@ -26,14 +27,15 @@ Test = Literal[
 
 - ``load``: the description cannot be loaded; ``simulate``: the simulation stopped with an error.
 - ``stand``: the robot does not stand; ``publish``: a topic published nothing.
-- ``drive``, ``turn``: a base does not follow its forward or turning commands.
+- ``drive``, ``turn``, ``sideways``: a base does not follow its forward, turning or sideways
+  commands.
 - ``reach``: a joint does not reach its position; ``spin``: it does not follow a velocity or effort.
 - ``fly``: an aircraft does not take off.
 - ``plugin``: a plugin that should move something is missing; ``controller``: a controller did not
   start, or no controller was found.
 """
 MOTION: frozenset[Test] = frozenset(
-    {"drive", "turn", "reach", "spin", "fly", "plugin", "controller", "simulate"}
+    {"drive", "turn", "sideways", "reach", "spin", "fly", "plugin", "controller", "simulate"}
 )
 """Tests of commanded motion."""
 _OURS = frozenset(

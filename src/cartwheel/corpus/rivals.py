@@ -75,6 +75,7 @@ def _errors(verdict: Verdict) -> Iterator[tuple[tuple[Test, str], float, bool]]:
     for drive in verdict.drives:
         yield ("drive", drive.topic), drive.error, drive.follows
         yield ("turn", drive.topic), drive.error_turn, drive.turns
+        yield ("sideways", drive.topic), drive.error_sideways, drive.slides
     for reach in verdict.reaches:
         yield ("reach", reach.joint), reach.error, reach.arrived
     for spin in verdict.spins:

@@ -10,7 +10,7 @@ from pathlib import Path
 from cartwheel.api import Model, World
 from cartwheel.checks.checking import check
 from cartwheel.checks.robot import Robot
-from cartwheel.corpus import commands, motion
+from cartwheel.corpus import commands, driving, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flights import flights
@@ -231,7 +231,7 @@ def _moved(
     verdict = replace(verdict, topics=topics, silent=silent)
     yield verdict
     if not stood.fixed:
-        bases = motion.drives(
+        bases = driving.drives(
             world,
             model,
             body,
@@ -241,7 +241,7 @@ def _moved(
             steered=_steered(robot, started),
         )
         verdict = replace(verdict, drives=tuple(bases))
-        if any(not (drive.follows and drive.turns) for drive in verdict.drives):
+        if not all(drive.passes for drive in verdict.drives):
             world.run(_LISTENING)
             found = dragging(world, model, body, started)
             apart = drives_apart(body, verdict.drives)

@@ -76,6 +76,9 @@ class Drive:
     commanded_turn: float
     """Separately commanded turn rate about the vertical, rad/s."""
     measured_turn: float
+    commanded_sideways: float = 0.0
+    """Separately commanded speed to the left, m/s; 0 if the base cannot move sideways."""
+    measured_sideways: float = 0.0
     turning: Literal["in place", "arc"] = "in place"
     """How it was commanded to turn: steered bases turn on an arc, while they drive forward."""
     limited: bool = False
@@ -95,6 +98,23 @@ class Drive:
     def error_turn(self) -> float:
         """Relative error of the turn rate."""
         return self.measured_turn / self.commanded_turn - 1.0
+
+    @property
+    def error_sideways(self) -> float:
+        """Relative error of the speed to the left; 0 if it was not commanded."""
+        if not self.commanded_sideways:
+            return 0.0
+        return self.measured_sideways / self.commanded_sideways - 1.0
+
+    @property
+    def passes(self) -> bool:
+        """Whether it moved as commanded in all directions."""
+        return self.follows and self.turns and self.slides
+
+    @property
+    def slides(self) -> bool:
+        """Whether it moved sideways as commanded, if it can."""
+        return -self.sag - TOLERANCE <= self.error_sideways <= TOLERANCE
 
     @property
     def follows(self) -> bool:

@@ -18,6 +18,8 @@ from cartwheel.description.launches import LaunchUse, launches_near
 from cartwheel.errors import CartwheelError
 
 SCHEMA = 2
+_NONE = "-"
+"""A column without a value."""
 _KINDS: dict[Kind, str] = {
     "macros": "with macros only",
     "part": "parts of robots",
@@ -26,8 +28,11 @@ _KINDS: dict[Kind, str] = {
     "old version": "old versions of models",
 }
 _OUTCOMES = {"file": "fault in the robot's files", "unknown": "fault for another reason"}
+_SIDEWAYS = "sideways"
+"""A column that is only printed if a robot can move sideways."""
 _HEAD = (
-    "robot", "loaded", "mass", "stands", "drives", "turns", "reaches", "topics", "speed", "plugins",
+    "robot", "loaded", "mass", "stands", "drives", "turns", _SIDEWAYS, "reaches", "topics", "speed",
+    "plugins",
 )  # fmt: skip
 
 
@@ -216,8 +221,14 @@ def _show(
         (_with_model(_name(verdict.file, folders), verdict.model), *_row(verdict))
         for verdict in verdicts
     ]
-    head, *lines = table([_HEAD, *rows]).splitlines()
-    say(paint(head, "dim"))
+    hidden = _HEAD.index(_SIDEWAYS)
+    if all(row[hidden] == _NONE for row in rows):
+        rows = [(*row[:hidden], *row[hidden + 1 :]) for row in rows]
+        head = tuple(name for name in _HEAD if name != _SIDEWAYS)
+    else:
+        head = _HEAD
+    title, *lines = table([head, *rows]).splitlines()
+    say(paint(title, "dim"))
     for line in lines:
         say(line)
     for verdict in verdicts:
@@ -270,7 +281,7 @@ def _row(verdict: Verdict) -> tuple[str, ...]:
         meshes = verdict.missing_meshes
         loaded = f"{meshes} mesh{'es' if meshes > 1 else ''} missing"
     stand = verdict.stand
-    state = stand.state if stand is not None else "-"
+    state = stand.state if stand is not None else _NONE
     if verdict.loaded and verdict.error and stand is None:
         state = "diverges"
     worst = max(verdict.reaches, key=lambda each: abs(each.error), default=None)
@@ -279,19 +290,22 @@ def _row(verdict: Verdict) -> tuple[str, ...]:
         plugins += f", missing {', '.join(verdict.missing)}"
     return (
         loaded,
-        "-" if math.isnan(verdict.mass) else f"{verdict.mass:.4g} kg",
+        _NONE if math.isnan(verdict.mass) else f"{verdict.mass:.4g} kg",
         state,
         _listed([f"{each.error:+.1%}" for each in verdict.drives]),
         _listed([f"{each.error_turn:+.1%}" for each in verdict.drives]),
-        "-" if worst is None else f"{abs(worst.error):.3f} {'rad' if worst.angular else 'm'}",
+        _listed(
+            [f"{each.error_sideways:+.1%}" for each in verdict.drives if each.commanded_sideways]
+        ),
+        _NONE if worst is None else f"{abs(worst.error):.3f} {'rad' if worst.angular else 'm'}",
         f"{verdict.topics - len(verdict.silent)} of {verdict.topics}",
-        "-" if math.isnan(verdict.speed) else f"{verdict.speed:.3g}x",
+        _NONE if math.isnan(verdict.speed) else f"{verdict.speed:.3g}x",
         plugins,
     )
 
 
 def _listed(words: Sequence[str]) -> str:
-    return ", ".join(words) or "-"
+    return ", ".join(words) or _NONE
 
 
 def _number(value: float) -> float | None:

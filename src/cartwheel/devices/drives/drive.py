@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from cartwheel.component import Component
 from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of, planar_motion
@@ -51,6 +51,8 @@ class Drive(Component):
 
     _odometry: Odometry | None = None
     _joint_states: JointStates | None = None
+    sideways: ClassVar[bool] = False
+    """Whether ``linear.y`` of the commands is followed."""
     enabled: bool = True
     """Whether commands move the robot. Requires a `timeout`."""
 

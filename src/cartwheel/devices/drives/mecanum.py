@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 from cartwheel.codes import robot
 from cartwheel.component import Scope
@@ -218,6 +218,8 @@ class MecanumDrive(Drive):
     Raises:
         UnknownNameError: A joint does not exist.
     """
+
+    sideways: ClassVar[bool] = True
 
     def __init__(self, scope: Scope, config: MecanumDriveConfig) -> None:
         super().__init__(scope)

@@ -156,6 +156,7 @@ class MecanumDriveController(WheelController):
     """
 
     types: ClassVar[tuple[str, ...]] = ("mecanum_drive_controller/MecanumDriveController",)
+    sideways: ClassVar[bool] = True
     _wheels: MecanumWheels
 
     parameters = MecanumParameters

@@ -81,6 +81,7 @@ class OmniWheelDriveController(WheelController):
     """
 
     types: ClassVar[tuple[str, ...]] = ("omni_wheel_drive_controller/OmniWheelDriveController",)
+    sideways: ClassVar[bool] = True
     _wheels: OmniWheels
 
     parameters = OmniWheelParameters

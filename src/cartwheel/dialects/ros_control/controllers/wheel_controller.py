@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from cartwheel.devices.drives.wheel_odometry import WheelOdometry
 from cartwheel.dialects.ros_control.controller import Controller
@@ -30,6 +30,8 @@ class WheelController(Controller):
     `configure` sets the command, the odometry and the wheels.
     """
 
+    sideways: ClassVar[bool] = False
+    """Whether ``linear.y`` of the commands is followed."""
     _command: TwistCommand
     _odometry: WheelOdometry
     _wheels: Wheels

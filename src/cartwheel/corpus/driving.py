@@ -1,0 +1,241 @@
+"""Drives a base on its topics: forward, sideways and turning."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence, Set
+from typing import Any, NamedTuple
+
+from cartwheel.api import Model, World
+from cartwheel.checks.robot import Robot
+from cartwheel.corpus.heading import heading
+from cartwheel.corpus.hovering import climbs, drag_errors
+from cartwheel.corpus.limits import StatedLimits
+from cartwheel.corpus.motion import positions
+from cartwheel.corpus.verdict import TOLERANCE, Drive
+from cartwheel.devices.drives.drive import Drive as DriveDevice
+from cartwheel.devices.drives.drive import Drives
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.classic.drives.planar_move import PlanarMove
+from cartwheel.dialects.gz.velocity_control import VelocityControl
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
+from cartwheel.geometry import Pose, rotate
+from cartwheel.graph import TWIST_STAMPED, TopicInfo
+from cartwheel.simulation.clock import NANOSECONDS
+
+VELOCITY, TURN = 0.2, 0.4
+"""m/s and rad/s commanded to a base: slow enough for the smallest robots."""
+_SPEED_UP = 4.0
+"""Time for a base to reach the commanded speed, s, unless its acceleration is limited."""
+_LONGEST = 20.0
+_RADIUS = 4.0
+"""Radius of the arc of a steered base, relative to the longest edge of its bounding box: the
+steering angle is at most atan(1/4) = 14°."""
+_SMALLEST = 0.1
+"""m; for bases without geometry."""
+_TAKING_OFF = 2.0
+"""Time after the message that starts a flight, s."""
+_CLIMB, _CLIMBING = 0.8, 4.0
+"""Speed in m/s and time in s for which an aircraft with velocity control climbs: it may sink while
+it turns, because a propeller's thrust depends on the square of its speed."""
+_MEASURED = 2.0
+_SETTLED = 0.01
+"""Increase from one measurement to the next, relative to the command, below which a base no longer
+accelerates."""
+_SLID = 0.01
+"""Speed that a base of planar_move loses, also in Gazebo, if it slides with a friction coefficient
+of 1, m/s."""
+_RATE = 20.0
+"""Rate of commands, Hz."""
+_WITHOUT_WHEELS = (PlanarMove, VelocityControl)
+"""Plugins that move a whole model, also sideways."""
+
+
+class Motion(NamedTuple):
+    """A velocity in the plane."""
+
+    ahead: float
+    """m/s."""
+    left: float
+    """m/s."""
+    turn: float
+    """rad/s, to the left."""
+
+
+def drives(
+    world: World,
+    model: Model,
+    robot: Robot,
+    limits: StatedLimits,
+    started: Sequence[Controller],
+    *,
+    idle: Set[str],
+    steered: bool,
+) -> Iterator[Drive]:
+    """Drives on each topic with velocity commands, forward, sideways and turning, after a reset.
+
+    Args:
+        world: The world.
+        model: The robot in the world.
+        robot: Its description.
+        limits: The robot's own limits. The commands stay below them.
+        started: The controllers that run.
+        idle: Nodes of controllers that do not run, whose topics are not tested.
+        steered: The base cannot turn in place, so it turns while it drives forward.
+    """
+    forward = min(VELOCITY, limits.forward)
+    turn = min(TURN, limits.turn)
+    if steered:
+        turn = min(turn, forward / (_RADIUS * max(robot.size, _SMALLEST)))
+    speed_up = max(
+        _SPEED_UP,
+        min(_LONGEST, 2.0 * max(forward / limits.acceleration, turn / limits.turn_acceleration)),
+    )
+    sag, sag_turn = drag_errors(robot.description)
+    if any(plugin_named(tag.filename) is PlanarMove for tag in robot.description.plugins):
+        sag = max(sag, _SLID / forward)
+    for info in world.graph.topics():
+        if not info.drives or (info.subscribers and idle >= set(info.subscribers)):
+            continue
+        both = Motion(forward if steered else 0.0, 0.0, turn)
+        ahead, turned = (
+            _driven(world, model, robot, info, (command, speed_up))
+            for command in (Motion(forward, 0.0, 0.0), both)
+        )
+        drive = _drive_of(world, info, started)
+        left = 0.0
+        if sideways := _takes_sideways(model, robot, info, drive):
+            command = Motion(0.0, forward, 0.0)
+            left = _driven(world, model, robot, info, (command, speed_up)).left
+        yield Drive(
+            topic=info.name,
+            commanded=drive.commanded(forward, 0.0)[0] if drive is not None else forward,
+            measured=ahead.ahead,
+            commanded_turn=drive.commanded(both.ahead, turn)[1] if drive is not None else turn,
+            measured_turn=turned.turn,
+            commanded_sideways=forward if sideways else 0.0,
+            measured_sideways=left,
+            turning="arc" if steered else "in place",
+            limited=forward < VELOCITY or (turn < TURN and not steered),
+            sag=sag,
+            sag_turn=sag_turn,
+        )
+    world.reset()
+
+
+def _drive_of(
+    world: World, topic: TopicInfo, started: Sequence[Controller]
+) -> DriveDevice | WheelController | None:
+    """The drive that receives the commands on a topic."""
+    return world.session.shared.get(Drives).of(topic.subscribers) or next(
+        (
+            each
+            for each in started
+            if isinstance(each, WheelController) and each.node in topic.subscribers
+        ),
+        None,
+    )
+
+
+def _takes_sideways(
+    model: Model, robot: Robot, topic: TopicInfo, drive: DriveDevice | WheelController | None
+) -> bool:
+    """Whether ``linear.y`` of the commands on a topic is followed."""
+    if drive is not None:
+        return drive.sideways
+    nodes = {
+        f"{model.name}/{tag.name}"
+        for tag in robot.description.plugins
+        if plugin_named(tag.filename) in _WITHOUT_WHEELS
+    }
+    return not nodes.isdisjoint(topic.subscribers)
+
+
+def _driven(
+    world: World, model: Model, robot: Robot, topic: TopicInfo, command: tuple[Motion, float]
+) -> Motion:
+    """The velocity after a constant command.
+
+    `command` contains the commanded velocity and the time to reach it in s.
+    """
+    world.reset()
+    world.run(0.5)
+    flying = _take_off(world, topic)
+    if climbs(robot.description):
+        flying = True
+        _drive_on(world, topic, Motion(0.0, 0.0, 0.0), _CLIMBING, climb=_CLIMB)
+    wanted, speed_up = command
+    _drive_on(world, topic, wanted, speed_up)
+    found = _measured(world, model, robot, topic, wanted, flying=flying)
+    waited = speed_up + _MEASURED
+    # Wheels that slide because of a small load need long to accelerate the base.
+    while waited < _LONGEST and not all(
+        abs(now - speed) <= TOLERANCE * abs(speed)
+        for now, speed in zip(found, wanted, strict=True)
+        if speed
+    ):
+        before = found
+        found = _measured(world, model, robot, topic, wanted, flying=flying)
+        waited += _MEASURED
+        changes = [
+            (now - then) / speed
+            for now, then, speed in zip(found, before, wanted, strict=True)
+            if speed
+        ]
+        if max(changes) < _SETTLED:
+            break
+    return found
+
+
+def _measured(
+    world: World, model: Model, robot: Robot, topic: TopicInfo, wanted: Motion, *, flying: bool
+) -> Motion:
+    """The velocity while a command is published."""
+    before, joints = model.pose, positions(world, model)
+    _drive_on(world, topic, wanted, _MEASURED)
+    after = model.pose
+    speeds = {
+        name: (end - joints[name]) / _MEASURED for name, end in positions(world, model).items()
+    }
+    # The pose is that of the root link, whose frame may be turned in the model's frame.
+    facing = (1.0, 0.0) if flying else heading(robot, speeds)
+    ahead = rotate(robot.description.canonical_pose.inverse().orientation, (*facing, 0))
+    x, y, _ = rotate(before.orientation, ahead)
+    length = math.hypot(x, y) or 1.0
+    dx, dy = after.x - before.x, after.y - before.y
+    turned = math.remainder(_yaw(after) - _yaw(before), 2 * math.pi)
+    along, across = (x * dx + y * dy) / length, (x * dy - y * dx) / length
+    return Motion(along / _MEASURED, across / _MEASURED, turned / _MEASURED)
+
+
+def _take_off(world: World, topic: TopicInfo) -> bool:
+    """Lets an aircraft take off that flies only after a message; whether there is such a topic."""
+    found = False
+    for each in world.graph.topics():
+        if each.name.rpartition("/")[2] == "takeoff" and set(each.subscribers) & set(
+            topic.subscribers
+        ):
+            found = True
+            world.publish(each.name, {})
+            world.run(_TAKING_OFF)
+    return found
+
+
+def _drive_on(
+    world: World, topic: TopicInfo, command: Motion, seconds: float, *, climb: float = 0.0
+) -> None:
+    linear = {"x": command.ahead, "y": command.left, "z": climb}
+    twist = {"linear": linear, "angular": {"z": command.turn}}
+    for _ in range(round(seconds * _RATE)):
+        said: dict[str, Any] = twist
+        if topic.type == TWIST_STAMPED:
+            now, rest = divmod(world.session.simulation.time_ns, NANOSECONDS)
+            said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
+        world.publish(topic.name, said)
+        world.run(1.0 / _RATE)
+
+
+def _yaw(pose: Pose) -> float:
+    x, y, _ = rotate(pose.orientation, (1, 0, 0))
+    return math.atan2(y, x)

@@ -1,0 +1,54 @@
+"""Bases that also move sideways."""
+
+import pytest
+from tests.corpus.carts import cart, plugin, written
+from tests.dialects.ros_control.cars import RADIUS, car, four_wheels, rollers
+
+from cartwheel.codes.robot import WHEEL_DIAMETER_MISMATCH
+from cartwheel.corpus import try_robot
+
+PLANAR = '<gazebo><plugin name="p" filename="libgazebo_ros_planar_move.so"/></gazebo>'
+MECANUM = """<plugin name="drive" filename="gz-sim-mecanum-drive-system">
+  <front_left_joint>front_left_joint</front_left_joint>
+  <front_right_joint>front_right_joint</front_right_joint>
+  <back_left_joint>rear_left_joint</back_left_joint>
+  <back_right_joint>rear_right_joint</back_right_joint>
+  <wheelbase>0.5</wheelbase><wheel_separation>0.4</wheel_separation>
+  <wheel_radius>{radius}</wheel_radius></plugin>"""
+
+
+def mecanum(tmp_path, radius, tags):
+    path = tmp_path / "car.urdf"
+    path.write_text(car(four_wheels(), MECANUM.format(radius=radius), (), tags))
+    verdict = try_robot(path, standing=1.0)
+    (drive,) = verdict.drives
+    assert drive.commanded_sideways == 0.2
+    return verdict, drive.measured_sideways
+
+
+@pytest.mark.parametrize("tags", ["", rollers()], ids=["pushed", "rollers"])
+def test_a_mecanum_drive_is_commanded_sideways(tmp_path, tags):
+    verdict, measured = mecanum(tmp_path, RADIUS, tags)
+    assert measured == pytest.approx(0.2, rel=0.05)
+    assert verdict.good, verdict.faults
+
+
+def test_a_wheel_of_half_the_stated_radius_moves_sideways_at_half_the_speed(tmp_path):
+    verdict, measured = mecanum(tmp_path, 2 * RADIUS, rollers())
+    assert measured == pytest.approx(0.1, rel=0.05)
+    codes = {each.test: each.code for each in verdict.faults}
+    assert codes["sideways"] is WHEEL_DIAMETER_MISMATCH
+    assert verdict.outcome == "file"
+
+
+def test_a_differential_drive_is_not(tmp_path):
+    (drive,) = try_robot(written(tmp_path, cart(), plugin()), standing=1.0).drives
+    assert drive.commanded_sideways == drive.error_sideways == 0.0
+    assert drive.slides
+
+
+def test_a_base_without_wheels_is_commanded_sideways(tmp_path):
+    box = cart().replace('type="continuous"', 'type="fixed"')
+    (drive,) = try_robot(written(tmp_path, box, PLANAR), standing=1.0).drives
+    assert drive.commanded_sideways == 0.2
+    assert drive.slides
