@@ -4,23 +4,26 @@ import html
 import sys
 from pathlib import Path
 
+from cartwheel.checks.checking import REPORTED
 from cartwheel.codes import MODULES, codes_of
 
 PAGE = Path(__file__).parents[1] / "docs" / "check.md"
 BEGIN, END = "<!-- codes: begin -->\n", "<!-- codes: end -->"
-DESCRIBED = ("files", "robot", "tags", "devices")
 WORDS = {"info": "note"}
 
 
 def table() -> str:
     """The codes that a check can report, as Markdown."""
     lines = ["| code | name | severity | reports |", "|---|---|---|---|"]
-    for module in DESCRIBED:
+    for module in MODULES:
+        codes = [code for code in codes_of(module) if code in REPORTED]
+        if not codes:
+            continue
         lines.append(f"| | **{MODULES[module]}** | | |")
         lines += [
             f"| {code.number} | `{code.name}` | {WORDS.get(code.severity, code.severity)} | "
             f"{html.escape(code.summary, quote=False)} |"
-            for code in codes_of(module)
+            for code in codes
         ]
     return "\n".join(lines) + "\n"
 

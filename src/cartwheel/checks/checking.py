@@ -18,14 +18,16 @@ from cartwheel.checks.stated_sizes import controlled_sides, controlled_steering
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
 from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
+from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.elements.node import Node
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
-REPORTED = tuple(
-    code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)
+REPORTED = (
+    *(code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)),
+    JOINT_DRIVEN_TWICE,
 )
 """Every code that a check can report, from the rules and from the description readers."""
 MAX_FAILURES = 30

@@ -85,7 +85,7 @@ def links_in(filename: str) -> frozenset[str]:
 
 def joints_in(filename: str) -> frozenset[str]:
     """The tags of a plugin that name joints other than those of driven wheels."""
-    return tags_with(filename, "joint") - tags_with(filename, *WHEEL_ROLES)
+    return tags_with(filename, "joint", "other_joint") - tags_with(filename, *WHEEL_ROLES)
 
 
 @cache

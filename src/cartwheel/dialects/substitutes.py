@@ -140,7 +140,8 @@ def _translated(
             continue
         role = item.metadata["role"]
         found = next((values[_words(each)] for each in tags if _words(each) in values), None)
-        if found is None and role in JOINT_ROLES and (side := role.partition("_")[0]) != "joint":
+        side = role.partition("_")[0]
+        if found is None and role in JOINT_ROLES and side not in ("joint", "other"):
             found = next(
                 (
                     value

@@ -19,6 +19,7 @@ Role = Literal[
     "wheel_diameter",
     "wheel_torque",
     "joint",
+    "other_joint",
     "steering",
     "link",
     "frame",
@@ -31,7 +32,8 @@ Role = Literal[
 """Meaning of a tag.
 
 - ``left_wheel``: the joint of a driven wheel; ``left_wheels``: joints separated by spaces.
-- ``steering``: a joint that steers a wheel; ``joint``: any other joint.
+- ``steering``: a joint that steers a wheel; ``joint``: any other joint that the plugin drives;
+  ``other_joint``: a joint that it measures, or that follows another one.
 - ``wheel_separation``: distance between wheels across the robot; ``wheel_base``: along it.
 - ``link``: the link that the plugin measures or moves.
 - ``frame``: the frame ID of messages, which is the name of a link.
@@ -41,7 +43,8 @@ Role = Literal[
 - ``tcp_port``, ``udp_port``: a port that the plugin opens.
 """
 WHEEL_ROLES: tuple[Role, ...] = ("left_wheel", "right_wheel", "left_wheels", "right_wheels")
-JOINT_ROLES: tuple[Role, ...] = (*WHEEL_ROLES, "steering", "joint")
+DRIVEN_ROLES: tuple[Role, ...] = (*WHEEL_ROLES, "steering", "joint")
+JOINT_ROLES: tuple[Role, ...] = (*DRIVEN_ROLES, "other_joint")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

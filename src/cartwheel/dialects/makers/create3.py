@@ -168,7 +168,7 @@ class Create3Mouse(Plugin[Create3MouseParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3WheelDropParameters:
-    joint: str = tag("joint_name", role="joint", doc="Suspension joint of the wheel.")
+    joint: str = tag("joint_name", role="other_joint", doc="Suspension joint of the wheel.")
     threshold: float = tag(
         "detection_threshold",
         default=0.7,

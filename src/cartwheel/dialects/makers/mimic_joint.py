@@ -17,10 +17,10 @@ from cartwheel.simulation.limits import FARTHEST
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MimicJointParameters:
     joint: str = tag(
-        "joint", default="left_joint", role="joint", doc="Joint whose position is mimicked."
+        "joint", default="left_joint", role="other_joint", doc="Joint whose position is mimicked."
     )
     mimic_joint: str = tag(
-        "mimicJoint", default="right_joint", role="joint", doc="Joint that mimics `<joint>`."
+        "mimicJoint", default="right_joint", role="other_joint", doc="Joint that mimics `<joint>`."
     )
     multiplier: float = tag(
         "multiplier",
@@ -122,12 +122,12 @@ def _stated(element: Element, name: str) -> Element | None:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DifferentialParameters:
     first: str = tag(
-        "jointA", default="left_joint", role="joint", doc="First of the two coupled joints."
+        "jointA", default="left_joint", role="other_joint", doc="First of the two coupled joints."
     )
     second: str = tag(
         "jointB",
         default="right_joint",
-        role="joint",
+        role="other_joint",
         doc="Second of the two coupled joints. It turns by the same angle as the first one.",
     )
     force: float = tag(

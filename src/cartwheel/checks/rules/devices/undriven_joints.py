@@ -66,5 +66,5 @@ def _may_drive(tag: PluginTag) -> bool:
         not plugin_tags.is_simulated(tag)
         or (plugin is not None and issubclass(plugin, ControlPlugin))
         or "control" in short_name(tag.filename)
-        or bool(plugin_tags.roles_with(tag.filename, "joint", *WHEEL_ROLES))
+        or bool(plugin_tags.roles_with(tag.filename, "joint", "other_joint", *WHEEL_ROLES))
     )

@@ -22,8 +22,12 @@ from cartwheel.errors import PluginError
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AckermannParameters:
-    front_left: str = joint_tag("front_left_joint", doc="Joint of the front left wheel.")
-    front_right: str = joint_tag("front_right_joint", doc="Joint of the front right wheel.")
+    front_left: str = joint_tag(
+        "front_left_joint", role="other_joint", doc="Joint of the front left wheel."
+    )
+    front_right: str = joint_tag(
+        "front_right_joint", role="other_joint", doc="Joint of the front right wheel."
+    )
     rear_left: str = joint_tag("rear_left_joint", doc="Joint of the driven rear left wheel.")
     rear_right: str = joint_tag("rear_right_joint", doc="Joint of the driven rear right wheel.")
     steer_left: str = joint_tag(

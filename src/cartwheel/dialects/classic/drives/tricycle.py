@@ -35,14 +35,14 @@ class TricycleParameters:
         "encoderWheelLeftJoint",
         "encoder_wheel_left_joint",
         default="left_wheel_joint",
-        role="joint",
+        role="other_joint",
         doc="Joint of the left passive wheel.",
     )
     right_joint: str = tag(
         "encoderWheelRightJoint",
         "encoder_wheel_right_joint",
         default="right_wheel_joint",
-        role="joint",
+        role="other_joint",
         doc="Joint of the right passive wheel.",
     )
     wheel_diameter: float = size_tag(

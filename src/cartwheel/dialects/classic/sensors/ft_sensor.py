@@ -20,7 +20,7 @@ class FtSensorParameters:
         "jointName",
         "joint_name",
         default="",
-        role="joint",
+        role="other_joint",
         doc="Joint whose force and torque are measured. Default: the joint that contains the "
         "sensor.",
     )

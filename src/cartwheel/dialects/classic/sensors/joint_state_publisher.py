@@ -41,7 +41,7 @@ class JointStatePublisherParameters:
         "jointName",
         "joint_name",
         default=(),
-        role="joint",
+        role="other_joint",
         doc="Joints to publish, separated by commas. Default: all movable joints.",
     )
     update_rate: float = publish_rate_tag("updateRate", "update_rate", default=100.0)
@@ -90,7 +90,7 @@ class GzJointStatePublisherParameters:
     names: tuple[str, ...] = tag(
         "joint_name",
         default=(),
-        role="joint",
+        role="other_joint",
         doc="Joint to publish. Repeat the tag for each joint. Default: all movable joints.",
     )
     update_rate: float = publish_rate_tag("update_rate")

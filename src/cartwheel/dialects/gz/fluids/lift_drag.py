@@ -67,7 +67,7 @@ class LiftDragParameters:
         "`<upward>` has no effect.",
     )
     joint: str = tag(
-        "control_joint_name", default="", role="joint", doc="Joint of the control surface."
+        "control_joint_name", default="", role="other_joint", doc="Joint of the control surface."
     )
     joint_slope: float = tag(
         "control_joint_rad_to_cl",

@@ -1,0 +1,123 @@
+"""Joints that several plugins drive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from cartwheel.checks import plugin_tags
+from cartwheel.checks.controller_claims import claims, has_standard_hardware, offers
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import running
+from cartwheel.description.model import PluginTag
+from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
+from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
+from cartwheel.dialects.ros_control.selection import launched
+from cartwheel.dialects.tag_roles import DRIVEN_ROLES
+from cartwheel.errors import Diagnostic, Origin
+
+_SHOWN = 4
+_HOLDING = ("position", "velocity")
+"""Interfaces by which ROS 1's hardware holds a joint without a controller."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Driver:
+    """What drives a joint."""
+
+    text: str
+    """A noun phrase."""
+    origin: Origin
+    shares: bool = False
+    """Whether only one of all such drivers acts at a time."""
+
+
+@rule(running.JOINT_DRIVEN_TWICE)
+def joint_driven_twice(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        drivers: dict[str, list[_Driver]] = {}
+        for joint, driver in (*_plugins(robot), *_managers(robot)):
+            drivers.setdefault(joint, []).append(driver)
+        for joint, driver in _controllers(subject, robot, set(drivers)):
+            known = drivers.setdefault(joint, [])
+            if not any(each.shares for each in known):
+                known.append(driver)
+        pairs: dict[tuple[_Driver, _Driver], list[str]] = {}
+        for joint, (first, *others) in drivers.items():
+            for other in others:
+                pairs.setdefault((first, other), []).append(joint)
+        for (first, other), joints in pairs.items():
+            yield running.JOINT_DRIVEN_TWICE.diagnostic(
+                f"{_named(joints)} driven by {first.text} and by {other.text}",
+                values={"joint": joints[0], "joints": tuple(joints)},
+                origin=other.origin,
+                hint="Remove one of them, or let it drive other joints.",
+            )
+
+
+def _named(joints: list[str]) -> str:
+    names = ", ".join(f'"{name}"' for name in joints[:_SHOWN])
+    more = f" and {len(joints) - _SHOWN} more" if len(joints) > _SHOWN else ""
+    return f"joint {names} is" if len(joints) == 1 else f"joints {names}{more} are"
+
+
+def _plugins(robot: Robot) -> Iterator[tuple[str, _Driver]]:
+    """The joints that supported plugins drive."""
+    for tag in robot.description.plugins:
+        if plugin_named(tag.filename) is None:
+            continue
+        names = dict.fromkeys(
+            name.strip()
+            for role in plugin_tags.roles(tag.filename)
+            if role.role in DRIVEN_ROLES
+            for name in role.joints(tag.element)
+        )
+        driver = _Driver(f'plugin "{tag.filename}"', tag.origin)
+        yield from ((name, driver) for name in names if name in robot.joints)
+
+
+def _managers(robot: Robot) -> Iterator[tuple[str, _Driver]]:
+    """The joints that controller managers hold, although no controller commands them.
+
+    Without another manager, those of ROS 2 leave joints to plugins, and that of ROS 1 those with an
+    effort interface.
+    """
+    for ros2 in (False, True):
+        tags = [tag for tag in robot.description.plugins if _is_manager(tag, ros2=ros2)]
+        offered = offers(robot, ros2=ros2)
+        if len(tags) == 1 and (ros2 or not has_standard_hardware(robot, ros2=False)):
+            continue
+        for tag in tags:
+            driver = _Driver(f'plugin "{tag.filename}"', tag.origin, shares=True)
+            for joint, interfaces in offered.items():
+                holds = any(name in _HOLDING for name, _ in interfaces)
+                if joint in robot.joints and (holds or len(tags) > 1):
+                    yield joint, driver
+
+
+def _is_manager(tag: PluginTag, *, ros2: bool) -> bool:
+    plugin = plugin_named(tag.filename)
+    if plugin is None or not issubclass(plugin, ControlPlugin):
+        return False
+    return ros2 != (plugin is plugin_named(ROS_CONTROL))
+
+
+def _controllers(subject: Subject, robot: Robot, driven: set[str]) -> Iterator[tuple[str, _Driver]]:
+    """Those of the joints that controllers command.
+
+    A file that was only found near the robot counts if a launch file starts the controller.
+    """
+    starts: tuple[str, ...] | None = None
+    for owner, file in subject.control:
+        if owner is not robot:
+            continue
+        for controller in file.controllers:
+            joints = {each.joint for each in claims(controller)} & driven
+            if joints and not file.named:
+                starts = launched(robot.description) if starts is None else starts
+                if controller.name not in starts:
+                    continue
+            driver = _Driver(f'controller "{controller.name}"', controller.type.origin, shares=True)
+            yield from ((joint, driver) for joint in sorted(joints))
