@@ -63,3 +63,26 @@ def test_a_folder_without_robots_is_an_error(program, tmp_path):
     said = program("corpus", tmp_path, status=2).stderr
     assert "contains no robot, but 1 with macros only" in said
     assert "that use them" in said
+
+
+def test_worlds_without_robots_are_counted(program, tmp_path):
+    """Also those in folders named worlds, which contain no models."""
+    world = '<sdf version="1.9"><world name="w">{}</world></sdf>'
+    (tmp_path / "worlds").mkdir()
+    (tmp_path / "worlds" / "a.world").write_text(world.format(""))
+    said = program("corpus", tmp_path, status=2).stderr
+    assert "contains no robot, but 1 world without robots" in said
+    (tmp_path / "b.sdf").write_text(world.format('<model name="m"><link name="l"/></model>'))
+    said = program("corpus", tmp_path, status=2).stderr
+    assert "contains no robot, but 2 worlds without robots" in said
+    assert "that the worlds include" in said
+    said = program("corpus", tmp_path / "b.sdf", status=2).stderr
+    assert "contains no robot, but 1 world without robots" in said
+
+
+def test_worlds_beside_a_robot_are_skipped(program, tmp_path):
+    (tmp_path / "box.urdf").write_text('<robot name="box"><link name="base"/></robot>')
+    (tmp_path / "a.world").write_text('<sdf version="1.9"><world name="w"/></sdf>')
+    found = json.loads(program("corpus", tmp_path, "--for", "1", "--json", status=None).stdout)
+    assert [each["kind"] for each in found["skipped"]] == ["world"]
+    assert "skipped: 1 world\n" in program("corpus", tmp_path, "--for", "1", status=None).stdout

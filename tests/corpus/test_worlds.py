@@ -59,6 +59,13 @@ def test_worlds_without_robots_and_unreadable_files_have_none(tmp_path):
     assert tmp_path / "cart.sdf" in found.robots
 
 
+def test_a_model_with_a_parameter_named_world_is_no_world(tmp_path):
+    file = tmp_path / "cart.sdf"
+    text = cart("alone").replace("</plugin>", "<world>yard</world></plugin>", 1)
+    file.write_text(f'<sdf version="1.9">{text}</sdf>')
+    assert survey(file).robots == survey(tmp_path).robots == (file,)
+
+
 def test_each_model_is_tested_alone_and_with_its_own_findings(tmp_path):
     file = world(tmp_path, cart("good"), cart("wide", apart=0.5), cart("last"))
     for name in ("good", "wide", "last"):

@@ -11,7 +11,7 @@ from typing import Literal
 
 from cartwheel.codes.files import XACRO_NAME_UNKNOWN
 from cartwheel.corpus.movers import is_mover
-from cartwheel.corpus.worlds import robots_in_worlds, text_of
+from cartwheel.corpus.worlds import robots_in_worlds, text_of, worlds_in
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
 from cartwheel.description.files.package_folders import package_above, package_name
@@ -88,8 +88,10 @@ def survey(
             scenery.
     """
     in_worlds = tuple(robots_in_worlds(folder, package_path))
+    worlds: list[tuple[Path, Kind]] = [(path, "world") for path in worlds_in(folder)]
     if folder.is_file():
-        return Survey(robots=() if in_worlds else (folder,), in_worlds=in_worlds)
+        robots = () if in_worlds or worlds else (folder,)
+        return Survey(robots=robots, in_worlds=in_worlds, skipped=() if in_worlds else (*worlds,))
     files = list(_files(folder))
     texts = {path: text for path in files if (text := _text(path)) is not None}
     launches = list(launches)
@@ -107,9 +109,11 @@ def survey(
         package_path=package_path,
     )
     kinds = {path: whole.kind(path) for path in texts}
+    skipped = [(path, kind) for path, kind in kinds.items() if kind is not None]
+    skipped += [each for each in worlds if each[0] not in kinds]
     return Survey(
         robots=tuple(path for path, kind in kinds.items() if kind is None),
-        skipped=tuple((path, kind) for path, kind in kinds.items() if kind is not None),
+        skipped=tuple(sorted(skipped)),
         in_worlds=in_worlds,
     )
 

@@ -19,6 +19,7 @@ from cartwheel.errors import DescriptionError, Origin, UnknownNameError
 _SUFFIXES = (".world", ".sdf", ".xacro")
 _MOST = 50
 """Maximum number of robots in one world."""
+_FIRST = re.compile(r"<(world|model|robot)[\s>]")
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 
 
@@ -32,6 +33,15 @@ def robots_in_worlds(folder: Path, package_path: Sequence[Path] = ()) -> Iterato
     for path in [folder] if folder.is_file() else _files(folder):
         for name in _robots(path, package_path):
             yield path, name
+
+
+def worlds_in(folder: Path) -> Iterator[Path]:
+    """The world files in a folder and its subfolders, or a file if it is a world."""
+    for path in [folder] if folder.is_file() else _files(folder):
+        # A plugin of a robot may have a parameter with this name.
+        first = _FIRST.search(text_of(path))
+        if first is not None and first[1] == "world":
+            yield path
 
 
 def load_from_world(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json as json_module
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,13 +20,17 @@ from cartwheel.errors import CartwheelError
 SCHEMA = 2
 _NONE = "-"
 """A column without a value."""
-_KINDS: dict[Kind, str] = {
-    "macros": "with macros only",
-    "part": "parts of robots",
-    "world": "worlds",
-    "scenery": "models without plugins and sensors",
-    "old version": "old versions of models",
+_KINDS: dict[Kind, tuple[str, str]] = {
+    "macros": ("with macros only", "with macros only"),
+    "part": ("part of a robot", "parts of robots"),
+    "world": ("world", "worlds"),
+    "scenery": ("model without plugins and sensors", "models without plugins and sensors"),
+    "old version": ("old version of a model", "old versions of models"),
 }
+"""The singular and plural of each kind."""
+_BARE: dict[Kind, str] = {"world": " without robots"}
+"""What follows the kind if the folder contains no robot."""
+_NOTHING: Mapping[Kind, str] = {}
 _OUTCOMES = {"file": "fault in the robot's files", "unknown": "fault for another reason"}
 _SIDEWAYS = "sideways"
 """A column that is only printed if a robot can move sideways."""
@@ -174,22 +178,34 @@ def _survey(
     launches = launches_near(folder, package_path) if folder.is_dir() else None
     found = survey(folder, package_path=package_path, launches=launches or ())
     if not (found.robots or found.in_worlds):
-        but = f", but {_counted(found.skipped)}" if found.skipped else ""
-        raise CartwheelError(
-            f"{folder} contains no robot{but or ' description'}",
-            code=NO_ROBOTS,
-            hint="Pass a folder with files that use them."
-            if any(kind in ("macros", "part") for _, kind in found.skipped)
-            else "Pass a folder that contains .xacro, .urdf, .sdf or .world files of robots.",
-            values={"folder": str(folder)},
-        )
+        raise _no_robots(folder, found.skipped)
     return found, launches
 
 
-def _counted(skipped: Sequence[tuple[Path, Kind]]) -> str:
-    """The number of files of each kind that is no robot."""
+def _no_robots(folder: Path, skipped: Sequence[tuple[Path, Kind]]) -> CartwheelError:
+    """The error for a folder or file without robots, which says what it contains instead."""
+    kinds = {kind for _, kind in skipped}
+    but = f", but {_counted(skipped, after=_BARE)}" if skipped else ""
+    hint = "Pass a folder that contains .xacro, .urdf, .sdf or .world files of robots."
+    if kinds & {"macros", "part"}:
+        hint = "Pass a folder with files that use them."
+    elif "world" in kinds:
+        hint = "Pass the folders of the models that the worlds include."
+    return CartwheelError(
+        f"{folder} contains no robot{but or ' description'}",
+        code=NO_ROBOTS,
+        hint=hint,
+        values={"folder": str(folder), "skipped": len(skipped)},
+    )
+
+
+def _counted(skipped: Sequence[tuple[Path, Kind]], after: Mapping[Kind, str] = _NOTHING) -> str:
+    """The number of files of each kind that is no robot; `after` follows the kind."""
     counts = Counter(kind for _, kind in skipped)
-    return ", ".join(f"{count} {_KINDS[kind]}" for kind, count in sorted(counts.items()))
+    return ", ".join(
+        f"{count} {_KINDS[kind][count > 1]}{after.get(kind, '')}"
+        for kind, count in sorted(counts.items())
+    )
 
 
 def _tried(robot: _Robot, package_path: Sequence[Path], standing: float) -> Verdict:
