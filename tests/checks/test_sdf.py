@@ -62,6 +62,15 @@ def test_the_worlds_own_step_bounds_the_rates(bench):
     assert found[0].instead == "<update_rate>100</update_rate>"
 
 
+@pytest.mark.wording
+def test_a_rate_above_that_of_the_physics_has_the_name_of_its_tag(bench):
+    tag = "<odom_publish_frequency>2e3</odom_publish_frequency>"
+    plugin = f'<plugin name="d" filename="gz-sim-diff-drive-system">{tag}</plugin>'
+    text = model().replace("</model>", f"{plugin}</model>")
+    (found,) = bench.find(text, "rate-above-physics", "m.sdf")
+    assert found.message.startswith("<odom_publish_frequency> of 2000 Hz exceeds")
+
+
 def test_a_version_too_old_leaves_the_check_incomplete(bench):
     report = bench.report('<gazebo version="0.9"><world name="w"/></gazebo>', "w.world")
     assert not report.complete

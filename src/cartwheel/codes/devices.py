@@ -6,7 +6,7 @@ VIEW_BLOCKED = Code(
     "CW401", "view-blocked", "warning", "the robot itself blocks the view of a camera or lidar"
 )
 RATE_ABOVE_PHYSICS = Code(
-    "CW402", "rate-above-physics", "warning", "an update rate is higher than the physics rate"
+    "CW402", "rate-above-physics", "warning", "a rate is higher than the physics rate"
 )
 SENSOR_TYPE_UNKNOWN = Code(
     "CW403", "sensor-type-unknown", "error", "a sensor has a type that Gazebo does not support"

@@ -1,4 +1,4 @@
-"""Update rates, compared with the rate of the physics."""
+"""Rates in tags, compared with the rate of the physics."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def rate_above_physics(subject: Subject) -> Iterator[Diagnostic]:
             rate = nodes.number(element.text)
             if rate is not None and rate > highest * 1.001:
                 yield devices_codes.RATE_ABOVE_PHYSICS.diagnostic(
-                    message=f"the update rate of {rate:g} Hz exceeds the physics rate of "
+                    message=f"<{element.tag}> of {rate:g} Hz exceeds the physics rate of "
                     f"{highest:g} steps per second",
                     values={"tag": element.tag, "rate": rate, "highest": highest},
                     **edits.text(element, nodes.short(highest)),
