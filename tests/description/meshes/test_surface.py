@@ -3,6 +3,7 @@
 import numpy as np
 
 from cartwheel.description.meshes import surface
+from cartwheel.description.meshes.submesh import unique_rows
 
 
 def test_few_faces_have_the_same_parts():
@@ -26,3 +27,21 @@ def test_closed_surfaces_have_each_edge_twice():
         edges = [tuple(sorted(pair)) for a, b, c in faces for pair in ((a, b), (b, c), (c, a))]
         closed = all(edges.count(edge) == 2 for edge in edges)
         assert surface.is_closed(faces) == closed
+
+
+def test_distinct_rows_are_found_once_and_again(monkeypatch):
+    random = np.random.default_rng(6)
+    rows = random.integers(0, 3, (60, 3)).astype(np.float32)
+    rows[0] = -0.0
+    first, inverse = unique_rows(rows)
+    once = rows[first]
+    assert len(once) == len(np.unique(rows + 0, axis=0))
+    assert np.array_equal(once[inverse], rows)
+    with monkeypatch.context() as patched:
+        patched.delattr(np, "unique")
+        again, back = unique_rows(once)
+    assert again.tolist() == back.tolist() == list(range(len(once)))
+    changed = once[::-1]
+    again, back = unique_rows(changed)
+    assert np.array_equal(changed[again], once)
+    assert np.array_equal(once[back], changed)

@@ -180,6 +180,8 @@ def unique_rows(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     for column in bits.T:
         key = (key ^ column) * np.uint64(0x9E3779B97F4A7C15)
         key ^= key >> np.uint64(29)
+    if (key[1:] > key[:-1]).all():  # they are the result of an earlier call
+        return np.arange(len(rows)), np.arange(len(rows))
     _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
     inverse = inverse.reshape(-1)
     if not np.array_equal(rows[first][inverse], rows):
