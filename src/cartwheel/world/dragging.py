@@ -41,7 +41,7 @@ def limited(
     Returns:
         The surfaces, and the collisions whose friction is reduced.
     """
-    surfaces = _without_misaligned(surfaces)
+    surfaces, twins = _without_misaligned(surfaces)
     treads: dict[str, list[Tread]] = {}
     for each in surfaces:
         if each.tread is not None:
@@ -58,14 +58,23 @@ def limited(
             added[surface.model, found.element] = found
         made.append(surface)
     dragging = {each.model for each in made if _drags(each, treads.get(each.model, ()))}
-    made = [replace(each, pulls=each.rolls and each.model in dragging) for each in made]
+    made = [
+        replace(each, pulls=each.rolls and each.model in dragging and each.name not in twins)
+        for each in made
+    ]
     return made, list(added.values())
 
 
-def _without_misaligned(surfaces: Iterable[BuiltSurface]) -> list[BuiltSurface]:
+def _without_misaligned(
+    surfaces: Iterable[BuiltSurface],
+) -> tuple[list[BuiltSurface], frozenset[str]]:
     """The surfaces, where wheels that cannot roll in the direction of the motion are dragged parts.
 
-    Ball casters are often described as a sphere on a continuous joint with any axis.
+    Ball casters are often described as a sphere on a continuous joint with any axis, or as two
+    spheres at one point, of which one rolls forward and one sideways.
+
+    Returns:
+        The surfaces, and the names of those that roll forward at the place of one that cannot.
     """
     surfaces = list(surfaces)
     driven: dict[str, list[Tread]] = {}
@@ -73,14 +82,24 @@ def _without_misaligned(surfaces: Iterable[BuiltSurface]) -> list[BuiltSurface]:
         if each.tread is not None and each.tread.driven:
             driven.setdefault(each.model, []).append(each.tread)
     made = []
+    across: dict[str, list[Tread]] = {}
     for each in surfaces:
         wheels = driven.get(each.model, ())
         if each.tread is not None and _is_misaligned(each.tread, wheels):
+            across.setdefault(each.model, []).append(each.tread)
             each = replace(each, rolls=False, tread=None, bottom=each.tread.bottom)  # noqa: PLW2901
         elif each.low is not None and _is_level(each.low, wheels):
             each = replace(each, rolls=False, bottom=each.low)  # noqa: PLW2901
         made.append(each)
-    return made
+    twins = (each for each in made if _is_at_one(each.tread, across.get(each.model, ())))
+    return made, frozenset(each.name for each in twins)
+
+
+def _is_at_one(tread: Tread | None, others: Sequence[Tread]) -> bool:
+    """Whether an undriven wheel is at the place of another wheel."""
+    if tread is None or tread.driven:
+        return False
+    return any(math.dist(tread.centre, each.centre) < _NEAR * each.radius for each in others)
 
 
 def _is_level(bottom: float, treads: Sequence[Tread]) -> bool:
