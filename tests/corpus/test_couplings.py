@@ -64,12 +64,12 @@ def test_the_friction_of_a_joint_also_holds_those_that_follow_it(tmp_path):
         "fingers:\n  type: effort_controllers/JointTrajectoryController\n"
         f"  joints: [left_joint, right_joint]\n  gains: {{left_joint: {gains},"
         f" right_joint: {gains}}}\n",
-        friction=0.3,
+        friction=0.15,
     )
     left, right = verdict.reaches
-    # 0.5 * 0.2 N m of two motors do not overcome the friction of 0.3 N m.
-    assert abs(right.error) == pytest.approx(0.2, abs=0.01)
-    assert right.sag == left.sag == pytest.approx(0.6, abs=0.01)
+    # At 0.15 rad from the target, 0.5 N m/rad of two motors no longer overcome the friction.
+    assert abs(right.error) == pytest.approx(0.15, abs=0.01)
+    assert right.sag == left.sag == pytest.approx(0.3, abs=0.01)
     assert verdict.good, verdict.faults
 
 

@@ -13,6 +13,7 @@ from cartwheel.api import World
 from cartwheel.api.motion import Twist
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.devices import (
+    CONTROLLER_GAIN_TOO_LOW,
     CONTROLLER_GAINS_MISSING,
     CONTROLLER_INTERFACE_MISMATCH,
     CONTROLLER_UNDAMPED,
@@ -633,10 +634,12 @@ def test_an_error_that_follows_from_the_load_and_the_gains_of_the_hardware_is_no
     assert verdict.good
 
 
-def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tried):
+@pytest.mark.parametrize("gain", [3.0, 12.0])
+def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tried, gain):
+    """Unless the joint does not move at all, because 0.2 rad times the gain is less."""
     plugin = (
         '<gazebo><plugin name="p" filename="gz-sim-joint-position-controller-system">'
-        "<joint_name>shoulder</joint_name><p_gain>3</p_gain></plugin></gazebo>"
+        f"<joint_name>shoulder</joint_name><p_gain>{gain}</p_gain></plugin></gazebo>"
     )
     rubbing = ARM.format(kind="Effort").replace(
         '<limit lower="-1"', '<dynamics friction="1.5" damping="1"/><limit lower="-1"'
@@ -645,8 +648,11 @@ def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tr
     (reach,) = verdict.reaches
     # Gravity, 0.98 N m sin(0.2), is not what holds it.
     assert abs(reach.error) > 0.1
-    assert reach.sag > 1.5 / 3.0
-    assert verdict.good, verdict.faults
+    assert reach.sag > 1.5 / gain
+    assert reach.moved == verdict.good == (gain * 0.2 > 1.5)
+    if not verdict.good:
+        (fault,) = verdict.faults
+        assert (fault.test, fault.code, fault.source) == ("reach", CONTROLLER_GAIN_TOO_LOW, "file")
 
 
 def test_an_arm_that_nothing_drives_falls_and_the_reason_is_reported(tried):

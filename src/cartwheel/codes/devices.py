@@ -279,3 +279,9 @@ CONTROLLER_UNDAMPED = Code(
     "info",
     "a PID controller without a derivative gain moves a joint without damping",
 )
+CONTROLLER_GAIN_TOO_LOW = Code(
+    "CW487",
+    "controller-gain-too-low",
+    "warning",
+    "a proportional gain is too low to overcome the friction of its joint",
+)

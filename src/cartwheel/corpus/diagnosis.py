@@ -59,6 +59,7 @@ _JOINTS = frozenset(
         robot.ROOT_NOT_HELD,
         devices.EFFORT_LIMIT_TOO_LOW,
         devices.CONTROLLER_GAINS_MISSING,
+        devices.CONTROLLER_GAIN_TOO_LOW,
         devices.CONTROLLER_UNDAMPED,
         devices.JOINT_CLAIMED_TWICE,
         running.JOINT_DRIVEN_TWICE,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from cartwheel.checks.gains import gain_too_low
 from cartwheel.codes import devices
 from cartwheel.corpus import commands, motion
 from cartwheel.description.model import RobotDescription
@@ -54,6 +55,36 @@ def weak_gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[s
                 if speed.force and weak:
                     found |= dict.fromkeys(speed.joints, speed.p)
     return found
+
+
+def too_weak(
+    robot: RobotDescription,
+    started: Sequence[Controller],
+    gains: Mapping[str, float],
+    joints: Iterable[str],
+) -> Iterator[Diagnostic]:
+    """Joints whose proportional gain is too low for their friction.
+
+    Args:
+        robot: The description.
+        started: The controllers that run.
+        gains: The gains that `weak_gains` returns.
+        joints: The joints of interest.
+    """
+    places = {
+        name: Origin(file=controller.settings.source)
+        for controller in started
+        if controller.settings.source
+        for name in controller.interfaces
+    }
+    for tag in robot.plugins:
+        if plugin_named(tag.filename) is JointPositionController:
+            named = {each.text.strip() for each in tag.element.find_all("joint_name")}
+            places |= dict.fromkeys(named, tag.origin)
+    for name in joints:
+        joint = robot.joint(name)
+        if joint is not None and name in gains:
+            yield from gain_too_low(joint, gains[name], places.get(name, joint.origin))
 
 
 def undamped(

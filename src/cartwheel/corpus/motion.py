@@ -78,13 +78,43 @@ def reaches(
     world.reset()
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
+    commanded = [joints[name] for taker in takers for name in taker.joints]
+    targets = _targets(world, model, commanded)
+    found = _reached(world, model, takers, joints, targets, gains=gains)
+    # The target may be where the load had moved the joint, and so the command as before.
+    doubtful = {each.joint for each in found if not each.moved and gains.get(each.joint)}
+    if not doubtful:
+        return found
+    world.reset()
+    world.run(1.0)
+    other = {
+        name: _elsewhere(joints[name], model.joint(name), target) if name in doubtful else target
+        for name, target in targets.items()
+    }
+    again = _reached(world, model, takers, joints, other, gains=gains)
+    return [
+        then if each.joint in doubtful and then.moved else each
+        for each, then in zip(found, again, strict=True)
+    ]
+
+
+def _reached(
+    world: World,
+    model: Model,
+    takers: Sequence[JointInput],
+    joints: Mapping[str, Joint],
+    chosen: Mapping[str, float],
+    *,
+    gains: Mapping[str, float],
+) -> list[Reach]:
+    """Commands targets, by joint, and measures where the joints end."""
     sent: list[tuple[JointInput, Joint, float]] = []
-    chosen = _targets(world, model, [joints[name] for taker in takers for name in taker.joints])
     for taker in takers:
         targets = {name: chosen[name] for name in taker.joints}
         taker.put(targets, _TRAJECTORY)
         sent += [(taker, joints[name], value) for name, value in targets.items()]
     held = {joint.name: held_by(world, model, joint.name) for _, joint, _ in sent}
+    start = positions(world, model)
     coupled = couplings_of(world, model)
     if sent:
         world.run(_REACHING)
@@ -92,6 +122,7 @@ def reaches(
         Reach(
             controller=taker.owner,
             joint=joint.name,
+            start=start[joint.name],
             target=target,
             reached=model.joint(joint.name),
             angular=joint.type != "prismatic",
@@ -102,6 +133,12 @@ def reaches(
         )
         for taker, joint, target in sent
     ]
+
+
+def _elsewhere(joint: Joint, start: float, target: float) -> float:
+    """Another target: on the other side, or nearer if the joint's limits exclude that."""
+    back = 2 * start - target
+    return back if within(joint, back) else (start + target) / 2
 
 
 def _is_commanded(world: World, controller: Controller) -> bool:

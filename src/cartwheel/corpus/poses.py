@@ -43,7 +43,8 @@ def posed(world: World, model: Model, robot: RobotDescription) -> Iterator[Reach
                 "points": [{"positions": list(targets.values()), "time_from_start": {"sec": 0}}],
             },
         )
-        nearest = {name: model.joint(name) for name in targets}
+        start = {name: model.joint(name) for name in targets}
+        nearest = dict(start)
         for _ in range(round(_WAITING / step)):
             world.run(step)
             for name, target in targets.items():
@@ -54,6 +55,7 @@ def posed(world: World, model: Model, robot: RobotDescription) -> Iterator[Reach
             yield Reach(
                 controller=short_name(tags[0].filename),
                 joint=name,
+                start=start[name],
                 target=target,
                 reached=nearest[name],
                 angular=joints[name].type != "prismatic",

@@ -14,7 +14,7 @@ from cartwheel.corpus import commands, driving, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flights import flights
-from cartwheel.corpus.gains import undamped, weak_gains
+from cartwheel.corpus.gains import too_weak, undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.placing import HIGH, name_in, put, surroundings
@@ -267,7 +267,7 @@ def _joints_moved(
     verdict = replace(verdict, reaches=tuple(reached))
     late = {each.joint for each in reached if not each.arrived}
     held |= late & blocked(world, model, Robot(robot, None)) if late else late
-    springs = tuple(undamped(robot, started, late)) if late else ()
+    springs = (*undamped(robot, started, late), *too_weak(robot, started, gains, sorted(late)))
     verdict = replace(verdict, observed=tuple(dict.fromkeys((*verdict.observed, *springs))))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))

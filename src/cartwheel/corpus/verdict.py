@@ -22,6 +22,8 @@ RISEN = 0.2
 """m; minimum increase in height of an aircraft that takes off."""
 CREEPING = 0.01
 """m/s and rad/s; maximum motion of a standing robot."""
+MOVED = 0.1
+"""Smallest part of the commanded way or speed at which a joint moves."""
 ANGLE, LENGTH = 0.1, 0.01
 """rad and m; maximum error of a joint position: a PID with effort output yields to gravity."""
 
@@ -137,6 +139,8 @@ class Reach:
     """rad or m."""
     reached: float
     angular: bool
+    start: float | None = None
+    """Where it was commanded, rad or m; None if this is unknown."""
     sag: float = 0.0
     """Error that follows from gravity, friction and the controller's own gains, rad or m: the load
     and the friction divided by the proportional gain of a PID controller with an effort output,
@@ -148,9 +152,16 @@ class Reach:
         return self.reached - self.target
 
     @property
+    def moved(self) -> bool:
+        """Whether it left the position at which it was commanded to move."""
+        if self.start is None:
+            return True
+        return abs(self.reached - self.start) >= MOVED * abs(self.target - self.start)
+
+    @property
     def arrived(self) -> bool:
-        """Whether the error is small, or not larger than that from gravity and the gains."""
-        return abs(self.error) <= (ANGLE if self.angular else LENGTH) + self.sag
+        """Whether it moved, with a small error, or one that follows from gravity and the gains."""
+        return self.moved and abs(self.error) <= (ANGLE if self.angular else LENGTH) + self.sag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -175,6 +186,8 @@ class Spin:
         """Whether the joint moved as commanded."""
         if self.effort:
             return self.measured * self.commanded > 0
+        if self.measured * self.commanded < MOVED * self.commanded**2:
+            return False
         return abs(self.measured - self.commanded) <= TOLERANCE * abs(self.commanded) + self.sag
 
 

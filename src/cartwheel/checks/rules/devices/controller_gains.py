@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
+import re
 from collections.abc import Iterator
 
 from cartwheel.checks.controller_claims import (
+    claims,
     gains_missing,
     gains_zero,
     severity_in,
+    table,
     used_controllers,
 )
-from cartwheel.checks.controller_files import Value
+from cartwheel.checks.controller_files import Controller, Value
+from cartwheel.checks.gains import SLOW, gain_too_low
+from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
-from cartwheel.errors import Diagnostic
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.gz.joint_controller import JointPositionController, JointPositionParameters
+from cartwheel.dialects.tags import read
+from cartwheel.errors import Diagnostic, PluginError
 
 _GAINS = "{p: 100.0, i: 0.0, d: 1.0}"
+_POSITIONS = re.compile("Position|Trajectory")
+"""Part of the types of controllers that move joints to positions."""
+_CLAMPS = ("i_clamp", "i_clamp_min", "i_clamp_max")
 _TUNED = "Tune the gains: p in N m/rad, d in N m s/rad."
 
 
@@ -65,6 +78,54 @@ def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
             mark="" if whole else missing[0][1].text,
             hint=_TUNED if whole else f"Add the gains to {under.rpartition('/')[0]}. {_TUNED}",
         )
+
+
+@rule(devices_codes.CONTROLLER_GAIN_TOO_LOW)
+def gains_too_low(subject: Subject) -> Iterator[Diagnostic]:
+    for robot, file in subject.control:
+        for controller in file.controllers:
+            if _POSITIONS.search(controller.kind):
+                yield from _of_controller(robot, controller)
+    for robot in subject.robots:
+        for tag in robot.description.plugins:
+            if plugin_named(tag.filename) is not JointPositionController:
+                continue
+            with contextlib.suppress(PluginError):
+                given, _ = read(JointPositionParameters, tag.element)
+                if given.velocity or given.i * SLOW >= given.p:
+                    continue
+                place = next(tag.element.find_all("p_gain"), None)
+                origin = tag.origin if place is None else place.origin
+                for name in given.joints:
+                    if name.strip() in robot.joints:
+                        yield from gain_too_low(robot.joints[name.strip()], given.p, origin)
+
+
+def _of_controller(robot: Robot, controller: Controller) -> Iterator[Diagnostic]:
+    """The gains of a controller with an effort output that are too low."""
+    ros1 = not controller.file.is_ros2
+    for claim in claims(controller):
+        if claim.interface != "effort" or claim.joint not in robot.joints:
+            continue
+        for row in table(controller, "gains"):
+            path = row.names[0].replace("{joint}", claim.joint)
+            value = controller.value(f"{path}/p")
+            clamped = any(_number(controller, f"{path}/{name}") for name in _CLAMPS)
+            # ros_control limits the integral to 0 if no limit is stated.
+            integral = 0.0 if ros1 and not clamped else _number(controller, f"{path}/i")
+            if value is None or value.number is None or integral * SLOW >= value.number:
+                continue
+            yield from gain_too_low(
+                robot.joints[claim.joint], value.number, value.origin, mark=value.text
+            )
+
+
+def _number(controller: Controller, path: str) -> float:
+    """A number at a path; infinite if a launch file sets it, and 0 if it is missing."""
+    value = controller.value(path)
+    if value is None:
+        return 0.0
+    return math.inf if value.number is None else value.number
 
 
 def _has_own_line(value: Value) -> bool:

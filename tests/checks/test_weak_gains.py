@@ -1,0 +1,45 @@
+"""Proportional gains that do not overcome the friction of a joint."""
+
+import pytest
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
+
+from cartwheel.checks.checking import check
+from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW
+from cartwheel.corpus import try_robot
+
+GZ = (
+    '<plugin name="p" filename="gz-sim-joint-position-controller-system">'
+    "<joint_name>beam_joint</joint_name><p_gain>{p}</p_gain><i_gain>{i}</i_gain><i_max>10</i_max>"
+    "<i_min>-10</i_min></plugin>"
+)
+FILE = (
+    "move:\n  type: effort_controllers/JointPositionController\n  joint: beam_joint\n"
+    "  pid: {{p: {p}, i: {i}, d: 0.1, i_clamp: 10}}\n"
+)
+
+
+def rubbing(plugin: str, friction: float) -> str:
+    dynamics = f'<dynamics friction="{friction}" damping="0.5"/>'
+    body = beam("beam", "world", axis="0 0 1").replace("</joint>", f"{dynamics}</joint>", 1)
+    return robot(body + transmission("beam_joint", "Effort"), plugin)
+
+
+@pytest.mark.parametrize(
+    ("p", "i", "reported"), [(3.0, 0.0, True), (12.0, 0.0, False), (3.0, 30.0, False)]
+)
+@pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
+def test_a_gain_that_does_not_overcome_friction_is_reported(tmp_path, p, i, reported, gz):
+    path = tmp_path / "arm.urdf"
+    path.write_text(rubbing(GZ.format(p=p, i=i) if gz else ROS1, 1.5))
+    (tmp_path / "move.yaml").write_text(FILE.format(p=p, i=i))
+    files = () if gz else (tmp_path / "move.yaml",)
+    findings = check(path, controller_files=files).findings
+    found = [each for each in findings if each.code is CONTROLLER_GAIN_TOO_LOW]
+    assert [each.values["joint"] for each in found] == ["beam_joint"] * reported
+    verdict = try_robot(path, standing=1.0, controllers=files)
+    (reach,) = verdict.reaches
+    assert reach.moved != reported
+    codes = [each.code for each in verdict.faults]
+    # An integral moves the joint, but may let it oscillate.
+    assert i or codes == [CONTROLLER_GAIN_TOO_LOW] * reported
+    assert (CONTROLLER_GAIN_TOO_LOW in codes) == reported
