@@ -11,8 +11,10 @@ from cartwheel.checks import nodes
 from cartwheel.checks.controller_files import ControlFile, Controller, Value
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
-from cartwheel.description.model import Element
+from cartwheel.description.model import Element, PluginTag
+from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
+from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
 from cartwheel.dialects.ros_control.parameters import OWN, SIZES, Role, Row, rows
 from cartwheel.errors import Severity, UnknownNameError
@@ -161,6 +163,17 @@ def offers(robot: Robot, *, ros2: bool) -> dict[str, list[tuple[str, Element]]]:
                 offered += [(name, each) for name in _INTERFACES.get(short, ())]
             offered.append(("", joint))
     return found
+
+
+def managers(robot: Robot, *, ros2: bool) -> list[PluginTag]:
+    """The plugins that run the controllers of ROS 1 or of ROS 2."""
+    return [
+        tag
+        for tag in robot.description.plugins
+        if (plugin := plugin_named(tag.filename)) is not None
+        and issubclass(plugin, ControlPlugin)
+        and ros2 != (plugin is plugin_named(ROS_CONTROL))
+    ]
 
 
 def has_standard_hardware(robot: Robot, *, ros2: bool) -> bool:

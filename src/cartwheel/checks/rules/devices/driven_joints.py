@@ -6,14 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from cartwheel.checks import plugin_tags
-from cartwheel.checks.controller_claims import claims, has_standard_hardware, offers
+from cartwheel.checks.controller_claims import claims, has_standard_hardware, managers, offers
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import running
-from cartwheel.description.model import PluginTag
-from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
-from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
+from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.ros_control.selection import launched
 from cartwheel.dialects.tag_roles import DRIVEN_ROLES
 from cartwheel.errors import Diagnostic, Origin
@@ -85,7 +83,7 @@ def _managers(robot: Robot) -> Iterator[tuple[str, _Driver]]:
     effort interface.
     """
     for ros2 in (False, True):
-        tags = [tag for tag in robot.description.plugins if _is_manager(tag, ros2=ros2)]
+        tags = managers(robot, ros2=ros2)
         offered = offers(robot, ros2=ros2)
         if len(tags) == 1 and (ros2 or not has_standard_hardware(robot, ros2=False)):
             continue
@@ -95,13 +93,6 @@ def _managers(robot: Robot) -> Iterator[tuple[str, _Driver]]:
                 holds = any(name in _HOLDING for name, _ in interfaces)
                 if joint in robot.joints and (holds or len(tags) > 1):
                     yield joint, driver
-
-
-def _is_manager(tag: PluginTag, *, ros2: bool) -> bool:
-    plugin = plugin_named(tag.filename)
-    if plugin is None or not issubclass(plugin, ControlPlugin):
-        return False
-    return ros2 != (plugin is plugin_named(ROS_CONTROL))
 
 
 def _controllers(subject: Subject, robot: Robot, driven: set[str]) -> Iterator[tuple[str, _Driver]]:

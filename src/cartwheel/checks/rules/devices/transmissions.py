@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.checks import edits, spelling
+from cartwheel.checks.controller_claims import managers
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject, is_known
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element
+from cartwheel.dialects.ros_control.interfaces import ros2_control, transmissions
 from cartwheel.errors import Code, Diagnostic
 
 _INTERFACES = tuple(
@@ -33,6 +35,25 @@ def transmission_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
 def ros2_control_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, joint in _driven_by(subject, "ros2_control"):
         yield from _joint_named(devices_codes.ROS2_CONTROL_JOINT_UNKNOWN, subject, robot, joint)
+
+
+@rule(devices_codes.CONTROL_WITHOUT_JOINTS)
+def control_without_joints(subject: Subject) -> Iterator[Diagnostic]:
+    if not subject.is_urdf:
+        # An SDF model may have the joints in the URDF from which it was made.
+        return
+    for robot in subject.robots:
+        for ros2, what in ((False, "no <transmission> drives"), (True, "no <ros2_control> lists")):
+            if ros2:
+                joints = ros2_control(robot.description)[0]
+            else:
+                joints = transmissions(robot.description, several=True)[0]
+            for tag in managers(robot, ros2=ros2) if not joints else ():
+                yield devices_codes.CONTROL_WITHOUT_JOINTS.diagnostic(
+                    f"{what} a joint, so controllers have no joint to command",
+                    origin=tag.origin,
+                    values={"plugin": tag.filename},
+                )
 
 
 @rule(devices_codes.INTERFACE_UNKNOWN)
