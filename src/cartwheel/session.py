@@ -54,7 +54,9 @@ class Spawned:
     controllers: tuple[Path, ...] = ()
     """Controller files."""
     controller_names: tuple[str, ...] = ()
-    """The controllers in these files that are started; empty for all."""
+    """Those in these files that are started; empty for all but the idle ones."""
+    idle_controllers: tuple[str, ...] = ()
+    """Those that are loaded, but not started."""
     package_path: tuple[Path, ...] = ()
     """Folders to search for packages first."""
 
@@ -218,9 +220,8 @@ class Session:
                 found = known(description, "suggested", lambda: suggested(description))
                 self.simulation.engine.report(no_controllers(description, found))
             if controllers == "auto":
-                key = ("selection", *package_path)
                 nearby = functools.partial(selection_near, description, package_path)
-                chosen = known(description, key, nearby)
+                chosen = known(description, ("selection", *package_path), nearby)
             elif isinstance(controllers, LaunchUse):
                 chosen = selection(description, controllers, (controllers,))
             else:
@@ -235,17 +236,17 @@ class Session:
                 namespace=namespace,
                 frame_prefix=frame_prefix,
             )
-        self.spawned[spawned] = Spawned(chosen.files, chosen.names, tuple(package_path))
+        how = Spawned(chosen.files, chosen.names, chosen.idle, tuple(package_path))
+        self.spawned[spawned] = how
         return spawned
 
     def _spawn(self, description: RobotDescription, controllers: Selection, **options: Any) -> str:
         files = self.shared.get(ControllerFiles)
-        files.paths, files.names = controllers.files, frozenset(controllers.names)
+        files.offer(controllers.files, controllers.names, controllers.idle)
         try:
             spawned = self.simulation.spawn(description, **options)
         finally:
-            left = files.take()
-            files.names = frozenset()
+            left = files.withdraw()
         if left:
             self.simulation.withdraw(spawned)
             raise PluginError(
@@ -272,14 +273,13 @@ class Session:
         if self._packages.add(description.origin.file, how.package_path):
             self.types.forget_missing()
         files = self.shared.get(ControllerFiles)
-        files.paths, files.names = how.controllers, frozenset(how.controller_names)
+        files.offer(how.controllers, how.controller_names, how.idle_controllers)
         try:
             resident = self.simulation.population.admit(
                 description, name, pose, namespace, frame_prefix
             )
         finally:
-            files.take()
-            files.names = frozenset()
+            files.withdraw()
         resident.part.spawned = True
         self.spawned[name] = how
         return resident

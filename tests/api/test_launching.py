@@ -8,6 +8,7 @@ import pytest
 from tests.coded import coded, raises
 
 import cartwheel as cw
+from cartwheel.codes.devices import CONTROLLER_ONLY_LOADED
 from cartwheel.codes.files import (
     ARGUMENT_UNKNOWN,
     LAUNCH_VALUE_UNKNOWN,
@@ -119,6 +120,56 @@ def test_the_launch_file_starts_the_controllers_that_it_names(package: Path) -> 
         world.run(1.0)
         assert world.model("slider").joint("slide") == pytest.approx(0.5, abs=1e-3)
         assert "/other/commands" not in {each.name for each in world.session.graph.topics()}
+
+
+@pytest.mark.parametrize(
+    ("starts", "severity"),
+    [
+        ('ExecuteProcess(cmd=["ros2", "control", "load_controller", "good"])', "warning"),
+        (
+            'ExecuteProcess(cmd=["ros2 control load_controller good --set-state inactive"])',
+            "info",
+        ),
+        (
+            'Node(package="controller_manager", executable="spawner",'
+            ' arguments=["good", "--inactive"])',
+            "info",
+        ),
+    ],
+)
+def test_a_controller_that_is_only_loaded_commands_no_joint(
+    package: Path, starts: str, severity: str
+) -> None:
+    file = package / "launch/slider.launch.py"
+    spawner = 'Node(package="controller_manager", executable="spawner", arguments=["good"])'
+    assert spawner in STARTER
+    file.write_text(STARTER.replace(spawner, starts))
+    (package / "config/control.yaml").write_text(
+        CONTROLLERS.replace(
+            "    other: {type: position_controllers/JointGroupPositionController}\n", ""
+        )
+    )
+    with cw.launch(file) as world:
+        (found,) = coded(world.diagnostics, CONTROLLER_ONLY_LOADED)
+        assert found.severity == severity
+        assert found.values["controller"] == "good"
+        world.publish("/good/commands", data=[0.5])
+        world.run(0.5)
+        slider = world.model("slider")
+        assert slider.joint("slide") == pytest.approx(0.0, abs=1e-3)
+        (listed,) = world.call("/controller_manager/list_controllers").controller
+        assert (listed.name, listed.state) == ("good", "inactive")
+        state = world.save()
+        switch = world.call(
+            "/controller_manager/switch_controller", activate_controllers=["good"], strictness=2
+        )
+        assert switch.ok
+        world.publish("/good/commands", data=[0.5])
+        world.run(1.0)
+        assert slider.joint("slide") == pytest.approx(0.5, abs=1e-3)
+        world.restore(state)
+        (listed,) = world.call("/controller_manager/list_controllers").controller
+        assert listed.state == "inactive"
 
 
 @pytest.mark.parametrize(

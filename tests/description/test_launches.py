@@ -229,36 +229,72 @@ def test_a_part_of_a_joined_path_may_be_a_list_of_substitutions(package):
     assert use.spawned == ("arm_controller",)
 
 
-@pytest.mark.parametrize(
-    ("command", "shell"),
-    [
-        (
-            '["ros2", "control", "load_controller", "--set-state", "active", "arm_controller"]',
-            False,
-        ),
-        ('["ros2 control load_controller -c /cm --set-state start ", "arm_controller"]', True),
-        ('["ros2 control load_controller --set-state=inactive ", "arm_controller"]', True),
-        ('[[FindExecutable(name="ros2"), " control load_controller arm_controller"]]', True),
-        (
-            '["ros2", "control", "load_controller", "arm_controller", share + "/config/a.yaml"]',
-            False,
-        ),
-        ('["ros2", "run", "controller_manager", "spawner", "arm_controller", "-t", "t/T"]', False),
-        ('["ros2", "control", "load_controller", "arm_controller", "--set-state", "inactive"]', 0),
-    ],
-)
-def test_a_command_of_ros2_starts_a_controller(package, command, shell):
-    text = f"""def generate_launch_description():
+COMMAND = """def generate_launch_description():
     share = get_package_share_directory("arm")
     path = share + "/urdf/arm.urdf.xacro"
     Node(package="robot_state_publisher",
          parameters=[{{"robot_description": Command(["xacro ", path])}}])
-    ExecuteProcess(cmd={command}, shell={shell}, output="screen")
+    ExecuteProcess(cmd={command}, shell=True, output="screen")
 """
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        '["ros2", "control", "load_controller", "--set-state", "active", "arm_controller"]',
+        '["ros2 control load_controller -c /cm --set_state start ", "arm_controller"]',
+        '[[FindExecutable(name="ros2"), " control load_controller --set-state=active", '
+        '" arm_controller"]]',
+        '["ros2", "control", "load_controller", "arm_controller", share + "/config/a.yaml", '
+        '"--set-state", "active"]',
+        '["ros2", "control", "load_start_controller", "arm_controller"]',
+        '["ros2", "control", "set_controller_state", "arm_controller", "active"]',
+        '["ros2", "control", "switch_controllers", "--deactivate", "other", "--activate", '
+        '"arm_controller", "--strict"]',
+        '["ros2", "run", "controller_manager", "spawner", "arm_controller", "-t", "t/T"]',
+    ],
+)
+def test_a_command_of_ros2_starts_a_controller(package, command):
+    folder = package(arm_dot_launch_dot_py=COMMAND.format(command=command))
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == ("arm_controller",)
+    assert use.loaded == ()
+    assert [each.name for each in use.controllers] == (["a.yaml"] if "a.yaml" in command else [])
+
+
+@pytest.mark.parametrize(
+    ("command", "loaded", "undecided"),
+    [
+        ('["ros2 control load_controller arm_controller"]', True, True),
+        ('["ros2 control load_controller -c /active arm_controller"]', True, True),
+        ('["ros2 control load_controller --set-state=inactive ", "arm_controller"]', True, False),
+        ('["ros2 control load_controller arm_controller --set-state configured"]', True, False),
+        ('["ros2 control load_configure_controller arm_controller"]', True, False),
+        ('["ros2 run controller_manager spawner --inactive arm_controller"]', True, False),
+        ('["ros2 run controller_manager spawner arm_controller --stopped"]', True, False),
+        ('["ros2 run controller_manager spawner arm_controller --load-only"]', True, False),
+        ('["ros2 control set_controller_state arm_controller inactive"]', False, False),
+        ('["ros2 control switch_controllers --deactivate arm_controller"]', False, False),
+        ('["ros2 control list_controllers -c arm_controller"]', False, False),
+        ('["ros2", "control"]', False, False),
+    ],
+)
+def test_a_command_of_ros2_only_loads_a_controller(package, command, loaded, undecided):
+    folder = package(arm_dot_launch_dot_py=COMMAND.format(command=command))
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == ()
+    assert use.loaded == ("arm_controller",) * loaded
+    assert use.undecided == {*["arm_controller"] * undecided}
+
+
+def test_a_loaded_controller_may_be_started_later(package):
+    text = COMMAND.format(command='["ros2 control load_controller arm_controller"]')
+    text += (
+        '    ExecuteProcess(cmd=["ros2 control switch_controllers --activate arm_controller"])\n'
+    )
     folder = package(arm_dot_launch_dot_py=text)
     use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
-    assert use.spawned == ("arm_controller",) * ("inactive" not in command)
-    assert [each.name for each in use.controllers] == (["a.yaml"] if "a.yaml" in command else [])
+    assert (use.spawned, use.loaded) == (("arm_controller",), ())
 
 
 @pytest.mark.parametrize(

@@ -285,3 +285,9 @@ CONTROLLER_GAIN_TOO_LOW = Code(
     "warning",
     "a proportional gain is too low to overcome the friction of its joint",
 )
+CONTROLLER_ONLY_LOADED = Code(
+    "CW488",
+    "controller-only-loaded",
+    "warning",
+    "a launch file loads a controller, but does not start it",
+)

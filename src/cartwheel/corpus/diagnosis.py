@@ -153,7 +153,8 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
     # controllers do not move with any hardware.
     moves = any(joint.type != "fixed" for joint in description.joints)
     stopped = replaced if verdict.controller_files or not moves else []
-    undefined = [each for each in verdict.observed if each.code is devices.CONTROLLER_UNDEFINED]
+    causes = (devices.CONTROLLER_UNDEFINED, devices.CONTROLLER_ONLY_LOADED)
+    undefined = [each for each in verdict.observed if each.code in causes]
     for each in undefined:
         yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
     for tag in managers(description, jointless=bool(replaced)):

@@ -15,7 +15,7 @@ from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.python_launch import read_python
-from cartwheel.description.launches.use import Facts, LaunchUse, beside
+from cartwheel.description.launches.use import Facts, LaunchUse, beside, only_loaded
 from cartwheel.description.launches.xml_launch import read_xml
 
 _FOLDER = 100
@@ -101,6 +101,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
     if not described and facts.yamls:
         described.append((None, {}))
     found = []
+    spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))
     for description, arguments in described:
         known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
         found.append(
@@ -110,7 +111,9 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 arguments=known,
                 unknown=len(arguments) - len(known),
                 controllers=tuple(dict.fromkeys(path for _, path in facts.yamls)),
-                spawned=tuple(dict.fromkeys(name for _, name in facts.spawned)),
+                spawned=spawned,
+                loaded=only_loaded((name for _, name in facts.loaded), spawned),
+                undecided=frozenset(facts.undecided),
                 simulated=facts.simulated,
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,

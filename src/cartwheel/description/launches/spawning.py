@@ -20,15 +20,6 @@ _NAMES = frozenset({"-model", "-entity", "-name"})
 _SPACES = frozenset({"-robot_namespace", "-namespace"})
 _IN_NAMESPACE = frozenset({"spawn_model", "spawn_entity.py"})
 """Those whose models have the namespace of their node, unless another one is stated."""
-_MANAGERS = frozenset({"-c", "--controller-manager"})
-_MANAGER_SPACES = frozenset({"-n", "--namespace"})
-"""Options of spawners that state the controller manager, or its namespace."""
-INACTIVE = frozenset({"--inactive", "--stopped", "--load-only"})
-"""Options of spawners that only load controllers."""
-SWITCHES = INACTIVE | {"--activate-as-group", "--unload-on-kill", "-u"}
-"""Options of spawners without a value."""
-_LOADING_OPTIONS = frozenset({"--set-state", "-c", "--controller-manager", "--spin-time"})
-"""Options of ``ros2 control load_controller`` with a value."""
 _FARTHEST = 1e6
 _WORLDS = (".world", ".sdf")
 
@@ -101,41 +92,6 @@ def resolved(space: str, name: str) -> str:
     if not name.startswith("/"):
         name = f"{space}/{name}"
     return limited("/".join(part for part in name.split("/") if part))
-
-
-def options_apart(words: list[str]) -> list[str]:
-    """Arguments of a spawner, with the value of an option such as ``--param-file=FILE`` apart."""
-    parts = (word.split("=", 1) if word.startswith("--") else [word] for word in words)
-    return [*itertools.chain(*parts)]
-
-
-def loaded_controller(words: list[str]) -> list[str]:
-    """The arguments of ``ros2 control load_controller`` that are no options: a controller, and
-    perhaps its file.
-    """
-    found = []
-    options = iter(words)
-    for word in options:
-        if word in _LOADING_OPTIONS:
-            next(options, None)
-        elif not word.startswith("-"):
-            found.append(word)
-    return found
-
-
-def manager_space(words: list[str], space: str) -> str:
-    """The namespace of a controller manager; empty if it is unknown, as for that of any robot.
-
-    Args:
-        words: Arguments of a spawner, which may state the manager.
-        space: The namespace of the spawner.
-    """
-    for flag, word in itertools.pairwise(words):
-        if flag in _MANAGERS:
-            space = resolved(space, word).rpartition("/")[0]
-        elif flag in _MANAGER_SPACES:
-            space = resolved(space, word)
-    return "" if UNKNOWN in space else space
 
 
 def _number(word: str) -> float | None:

@@ -18,7 +18,7 @@ from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.search import facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
-from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse
+from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse, only_loaded
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.options import PACKAGE_PATH, WORLD
 from cartwheel.similar_names import meant, suggestion
@@ -231,17 +231,17 @@ def _with_own_controllers(
         for each in models
     ]
     every = [*itertools.chain(*spaces)]
-    return tuple(
-        replace(
-            each,
-            use=replace(
-                each.use,
-                controllers=tuple(_own(mine, every, facts.yamls)),
-                spawned=tuple(_own(mine, every, facts.spawned)),
-            ),
+    made = []
+    for each, mine in zip(models, spaces, strict=True):
+        spawned = tuple(_own(mine, every, facts.spawned))
+        use = replace(
+            each.use,
+            controllers=tuple(_own(mine, every, facts.yamls)),
+            spawned=spawned,
+            loaded=only_loaded(_own(mine, every, facts.loaded), spawned),
         )
-        for each, mine in zip(models, spaces, strict=True)
-    )
+        made.append(replace(each, use=use))
+    return tuple(made)
 
 
 def _own(mine: Collection[str], every: Sequence[str], given: Sequence[tuple[str, T]]) -> list[T]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -17,15 +17,15 @@ from cartwheel.description.files.package_folders import (
     package_name,
 )
 from cartwheel.description.launches.bridging import BRIDGES, RenamedTopic, renamed_topics
+from cartwheel.description.launches.controllers import (
+    ControllerCommand,
+    by_command,
+    by_spawner,
+)
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.spawning import (
-    INACTIVE,
     MODEL_SPAWNERS,
-    SWITCHES,
     Spawn,
-    loaded_controller,
-    manager_space,
-    options_apart,
     resolved,
     spawn_of,
     split,
@@ -90,6 +90,10 @@ class LaunchUse:
     namespace NAME, is ``NAME=FILE``."""
     spawned: tuple[str, ...] = ()
     """Names of the controllers that it starts."""
+    loaded: tuple[str, ...] = ()
+    """Names of those that it loads, but does not start."""
+    undecided: frozenset[str] = frozenset()
+    """Those of them for which it may be a mistake: it does not state that they are inactive."""
     simulated: bool = False
     """Whether it starts Gazebo or spawns a model."""
     guessed: bool = False
@@ -97,6 +101,11 @@ class LaunchUse:
     then be any file, also one that is not a robot."""
     world: str = ""
     """The world that it starts, as it is stated; empty if there is none."""
+
+
+def only_loaded(loaded: Iterable[str], spawned: Collection[str]) -> tuple[str, ...]:
+    """The loaded controllers that no other command starts."""
+    return tuple(dict.fromkeys(name for name in loaded if name not in spawned))
 
 
 def _is_single(file: Path) -> bool:
@@ -134,6 +143,10 @@ class Facts:
     """Files with parameters of controllers, with the namespaces into which they are loaded."""
     spawned: list[tuple[str, str]] = field(default_factory=list)
     """Controllers that are started, with the namespaces of their managers."""
+    loaded: list[tuple[str, str]] = field(default_factory=list)
+    """Those that are loaded, but not started by the same command."""
+    undecided: set[str] = field(default_factory=set)
+    """Those of them whose command does not state that it does not start them."""
     simulated: bool = False
     spawns: list[Spawn] = field(default_factory=list)
     world: str = ""
@@ -297,7 +310,7 @@ class Facts:
             self.effort.spend(len(words) + len(remappings))
             self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
-            self._spawn(words, space)
+            self._control(by_spawner(words, space))
 
     def bridge(self, text: str) -> None:
         """Adds a configuration file of ros_gz_bridge if it exists."""
@@ -317,38 +330,21 @@ class Facts:
         program, *rest = " ".join(words).split() or [""]
         if program.rsplit("/", 1)[-1] != "ros2":
             return
-        if rest[:2] == ["control", "load_controller"]:
-            self._load(rest[2:])
+        if rest[:1] == ["control"]:
+            self._control(by_command(rest[1:]))
         elif rest[:1] == ["run"] and rest[2:3]:
             self.node(rest[1], rest[2], rest[3:], "")
 
     def _begin(self, world: str) -> None:
         self.world = self.world or world.strip()
 
-    def _load(self, words: list[str]) -> None:
-        """Adds the controller of ``ros2 control load_controller``, and its parameters."""
-        words = options_apart(words)
-        stated = loaded_controller(words)
-        space = manager_space(words, "")
-        self._spawn([] if "inactive" in words else stated[:1], space)
-        for each in stated[1:2]:
-            self.parameters(each, within=space)
-
-    def _spawn(self, words: list[str], space: str) -> None:
-        words = options_apart(words)
-        space = manager_space(words, space)
-        starts = not any(word in INACTIVE or word == "load" for word in words)
-        skip = False
-        for index, word in enumerate(words):
-            if skip:
-                skip = False
-            elif word.startswith("-"):
-                # Options with a value, such as --controller-manager /controller_manager.
-                skip = word not in SWITCHES
-                if word in ("-p", "--param-file") and index + 1 < len(words):
-                    self.parameters(words[index + 1], within=space)
-            elif starts and word not in ("spawn", "start") and re.fullmatch(r"[\w/]+", word):
-                self.spawned.append((space, word.rsplit("/", 1)[-1]))
+    def _control(self, command: ControllerCommand | None) -> None:
+        if command is not None:
+            self.spawned += ((command.space, name) for name in command.started)
+            self.loaded += ((command.space, name) for name in command.loaded)
+            self.undecided |= set(() if command.decided else command.loaded)
+            for each in command.files:
+                self.parameters(each, within=command.space)
 
     def parameters(self, text: str, namespace: str = "", *, within: str | None = None) -> None:
         """Adds a YAML file if it exists.

@@ -108,10 +108,13 @@ class ControlPlugin(Plugin[Any]):
         description = self.part.description
         movable = {joint.name for joint in description.joints if joint.type != "fixed"}
         # Reading the launch files takes time, so they are only read if they have to decide.
-        chosen = launched(description) if compete(listed, movable) else ()
+        active = [entry for entry in listed if entry.name not in files.idle]
+        chosen = launched(description) if compete(active, movable) else ()
         for entry in in_order(listed, chosen):
             try:
                 files.loaded.append(manager.load_entry(entry))
+                if entry.name in files.idle:
+                    continue
                 manager.switch([entry.name], [], sharing=chosen if manager.robot.ros2 else ())
             except CartwheelError as error:
                 self.part.report(

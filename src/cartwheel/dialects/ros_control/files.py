@@ -63,6 +63,8 @@ class ControllerFiles:
         self.paths: tuple[Path, ...] = ()
         self.names: frozenset[str] = frozenset()
         """Names of the controllers to start, if the files contain all of them; empty: all."""
+        self.idle: frozenset[str] = frozenset()
+        """Names of controllers to load, but not to start."""
         self.loaded: list[Controller] = []
         """Controllers that managers have loaded from files."""
         self.readings: Readings | None = None
@@ -74,11 +76,21 @@ class ControllerFiles:
         return [controller for controller in self.loaded if controller.running]
 
     def wanted(self, entries: Iterable[ControllerEntry]) -> list[ControllerEntry]:
-        """Returns the controllers among the files' entries that are started."""
+        """Returns the controllers among the files' entries that are started, or `idle`."""
         listed = list(entries)
         if not self.names or not self.names <= {entry.name for entry in listed}:
             return listed
-        return [entry for entry in listed if entry.name in self.names]
+        return [entry for entry in listed if entry.name in self.names | self.idle]
+
+    def offer(self, paths: Iterable[Path], names: Iterable[str], idle: Iterable[str]) -> None:
+        """Sets what the next robot uses."""
+        self.paths, self.names, self.idle = tuple(paths), frozenset(names), frozenset(idle)
+
+    def withdraw(self) -> tuple[Path, ...]:
+        """Clears what the robot did not use; returns the files that no controller manager took."""
+        left = self.take()
+        self.names = self.idle = frozenset()
+        return left
 
     def take(self) -> tuple[Path, ...]:
         """Returns the files and clears them, so that only one robot uses them."""

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cartwheel import yaml_text
-from cartwheel.codes.devices import CONTROL_ELSEWHERE, CONTROLLER_UNDEFINED
+from cartwheel.codes.devices import CONTROL_ELSEWHERE, CONTROLLER_ONLY_LOADED, CONTROLLER_UNDEFINED
 from cartwheel.description import load_robot
 from cartwheel.description.launches import (
     LaunchUse,
@@ -60,8 +60,11 @@ class Selection:
     """YAML files with controllers for the robot."""
     names: tuple[str, ...]
     """Names of the controllers that the launch file starts; empty: all."""
+    idle: tuple[str, ...] = ()
+    """Names of those that the launch file loads, but does not start."""
     problems: tuple[Diagnostic, ...] = ()
-    """Why files that the launch file loads for these controllers cannot be read."""
+    """Why files that the launch file loads for these controllers cannot be read, and which
+    controllers are not started."""
 
 
 def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -> Selection:
@@ -81,7 +84,9 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     use = chosen(file, launches)
     if not suggested(robot):
         starter = _starter(file, use, launches)
-        return Selection(files=(), names=(), problems=tuple(_undefined(robot, starter)))
+        problems = (*_undefined(robot, starter), *_only_loaded(starter))
+        idle = () if starter is None else starter.loaded
+        return Selection(files=(), names=(), idle=idle, problems=problems)
     return selection(robot, use, launches)
 
 
@@ -96,7 +101,8 @@ def launched(robot: RobotDescription) -> tuple[str, ...]:
 
 def _starter(file: Path, use: LaunchUse | None, launches: Sequence[LaunchUse]) -> LaunchUse | None:
     """The launch file that starts a description's controllers."""
-    return use if use is not None and use.spawned else controllers_for(file, use, launches)
+    starts = use is not None and (use.spawned or use.loaded)
+    return use if starts else controllers_for(file, use, launches)
 
 
 def selection(
@@ -137,8 +143,9 @@ def selection(
     unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
     starting = starter or _starter(Path(robot.origin.file), use, launches)
     reported = _undefined(robot, starting, within)
-    problems = (*unreadable, *reported)
-    return Selection(files=files, names=names, problems=problems)
+    idle = () if starting is None else starting.loaded
+    problems = (*unreadable, *reported, *_only_loaded(starting))
+    return Selection(files=files, names=names, idle=idle, problems=problems)
 
 
 def _unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnostic]:
@@ -184,6 +191,22 @@ def _undefined(
                 origin=Origin(file=str(starter.file)),
                 values={"controller": name},
             )
+
+
+def _only_loaded(starter: LaunchUse | None) -> Iterator[Diagnostic]:
+    """Controllers that a launch file loads, but does not start."""
+    if starter is None:
+        return
+    for name in starter.loaded:
+        undecided = name in starter.undecided
+        yield CONTROLLER_ONLY_LOADED.diagnostic(
+            f'"{starter.file.name}" only loads the controller "{name}", so it does not command '
+            "joints until it is started",
+            severity="warning" if undecided else "info",
+            origin=Origin(file=str(starter.file)),
+            hint="Add --set-state active to the command." if undecided else "",
+            values={"controller": name},
+        )
 
 
 def _definitions(folder: Path) -> list[Path]:

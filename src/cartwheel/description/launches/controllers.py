@@ -1,0 +1,152 @@
+"""The controllers in the arguments of spawners, and in commands of ``ros2 control``."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from cartwheel.description.launches.effort import UNKNOWN
+from cartwheel.description.launches.spawning import resolved
+
+_MANAGERS = frozenset({"-c", "--controller-manager"})
+_MANAGER_SPACES = frozenset({"-n", "--namespace"})
+"""Options of spawners that state the controller manager, or its namespace."""
+_FILES = frozenset({"-p", "--param-file"})
+_INACTIVE = frozenset({"--inactive", "--stopped", "--load-only"})
+"""Options of spawners that only load controllers."""
+_SWITCHES = _INACTIVE | {
+    "--activate-as-group",
+    "--unload-on-kill",
+    "-u",
+    "--switch-asap",
+    "--no-switch-asap",
+}
+"""Options of spawners without a value."""
+_STATE = frozenset({"--set-state", "--set_state"})
+_VALUED = _STATE | _MANAGERS | {"--spin-time", "--switch-timeout"}
+"""Options of ``ros2 control`` with a value."""
+_RUNNING = frozenset({"active", "start"})
+"""States in which a controller commands joints; ``start`` is the older name."""
+_STARTING = frozenset({"load_start_controller", "configure_start_controller"})
+"""Older commands that also start the controller."""
+_LOADING = frozenset({"load_controller", "load_configure_controller"})
+_ACTIVATE = frozenset({"--activate", "--start"})
+_CONTROLLER = re.compile(r"[\w/]+")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ControllerCommand:
+    """What a spawner or a command does with controllers."""
+
+    space: str
+    """The namespace of the controller manager; empty if it is unknown, as for that of any robot."""
+    started: tuple[str, ...] = ()
+    loaded: tuple[str, ...] = ()
+    """Controllers that it loads, but does not start."""
+    decided: bool = True
+    """Whether it states that it does not start them, as ``--inactive`` does."""
+    files: tuple[str, ...] = ()
+    """Names of files with their parameters."""
+
+
+def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
+    """The controllers of a spawner with these arguments, in its namespace."""
+    words = _apart(words)
+    names: list[str] = []
+    files: list[str] = []
+    options = iter(words)
+    for word in options:
+        if word in _FILES:
+            files += itertools.islice(options, 1)
+        elif word.startswith("-"):
+            # Options with a value, such as --controller-manager /controller_manager.
+            if word not in _SWITCHES:
+                next(options, None)
+        elif word not in ("spawn", "start", "load"):
+            names.append(word)
+    known = tuple(_names(names))
+    starts = not any(word in _INACTIVE or word == "load" for word in words)
+    return ControllerCommand(
+        space=_manager_space(words, space),
+        started=known if starts else (),
+        loaded=() if starts else known,
+        files=tuple(files),
+    )
+
+
+def by_command(words: Iterable[str]) -> ControllerCommand | None:
+    """The controllers of ``ros2 control`` with these arguments; None for those without any.
+
+    ``load_controller`` only loads a controller, unless ``--set-state active`` is stated.
+    ``set_controller_state`` and ``switch_controllers`` start controllers that are loaded.
+    """
+    verb, *rest = _apart(words) or [""]
+    stated, state = _values(rest)
+    space = _manager_space(rest, "")
+    first = tuple(_names(stated[:1]))
+    if verb in _STARTING or (verb in _LOADING and state in _RUNNING):
+        return ControllerCommand(space=space, started=first, files=tuple(stated[1:2]))
+    if verb in _LOADING:
+        return ControllerCommand(
+            space=space,
+            loaded=first,
+            decided=bool(state) or verb != "load_controller",
+            files=tuple(stated[1:2]),
+        )
+    if verb == "set_controller_state" and stated[1:2] and stated[1] in _RUNNING:
+        return ControllerCommand(space=space, started=first)
+    if verb == "switch_controllers":
+        return ControllerCommand(space=space, started=tuple(_names(_activated(rest))))
+    return None
+
+
+def _apart(words: Iterable[str]) -> list[str]:
+    """Arguments with the value of an option such as ``--param-file=FILE`` apart."""
+    parts = (word.split("=", 1) if word.startswith("--") else [word] for word in words)
+    return [*itertools.chain(*parts)]
+
+
+def _values(words: Iterable[str]) -> tuple[list[str], str]:
+    """The arguments that are no options, and the stated state of the controller."""
+    found: list[str] = []
+    state = ""
+    options = iter(words)
+    for word in options:
+        if word in _VALUED:
+            value = next(options, "")
+            state = value if word in _STATE else state
+        elif not word.startswith("-"):
+            found.append(word)
+    return found, state
+
+
+def _activated(words: Iterable[str]) -> Iterator[str]:
+    """The arguments after ``--activate``, up to the next option."""
+    active = False
+    for word in words:
+        if word.startswith("-"):
+            active = word in _ACTIVATE
+        elif active:
+            yield word
+
+
+def _names(words: Iterable[str]) -> Iterator[str]:
+    """The last parts of the names among words, such as those without unknown parts."""
+    return (word.rsplit("/", 1)[-1] for word in words if _CONTROLLER.fullmatch(word))
+
+
+def _manager_space(words: Sequence[str], space: str) -> str:
+    """The namespace of a controller manager.
+
+    Args:
+        words: Arguments of a spawner, which may state the manager.
+        space: The namespace of the spawner.
+    """
+    for flag, word in itertools.pairwise(words):
+        if flag in _MANAGERS:
+            space = resolved(space, word).rpartition("/")[0]
+        elif flag in _MANAGER_SPACES:
+            space = resolved(space, word)
+    return "" if UNKNOWN in space else space
