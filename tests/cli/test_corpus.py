@@ -86,3 +86,19 @@ def test_worlds_beside_a_robot_are_skipped(program, tmp_path):
     found = json.loads(program("corpus", tmp_path, "--for", "1", "--json", status=None).stdout)
     assert [each["kind"] for each in found["skipped"]] == ["world"]
     assert "skipped: 1 world\n" in program("corpus", tmp_path, "--for", "1", status=None).stdout
+
+
+def test_the_arguments_of_a_launch_file_are_printed_with_a_fault(program, tmp_path):
+    (tmp_path / "package.xml").write_text("<package><name>cart</name></package>")
+    (tmp_path / "cart.xacro").write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart"><xacro:arg name="sim"'
+        ' default="0"/><link name="base"/><xacro:if value="$(arg sim)"><gazebo>'
+        '<plugin name="d" filename="libown_drive.so"/></gazebo></xacro:if></robot>'
+    )
+    (tmp_path / "cart.launch").write_text(
+        '<launch><param name="robot_description" '
+        'command="xacro $(find cart)/cart.xacro sim:=1"/></launch>'
+    )
+    done = program("corpus", tmp_path, "--for", "1", status=1)
+    (line,) = [each for each in done.stdout.splitlines() if "sim:=1" in each]
+    assert "cart.launch" in line

@@ -11,8 +11,16 @@ from cartwheel.codes import devices as devices_codes
 from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.repositories import repository_of
+from cartwheel.description.launches import (
+    chosen,
+    launches_near,
+    own_folder,
+    own_launches,
+    root_of,
+)
 from cartwheel.description.model import Element
-from cartwheel.dialects.ros_control.suggestion import files_for
+from cartwheel.dialects.ros_control.selection import selection
+from cartwheel.dialects.ros_control.suggestion import files_for, lacks_controllers
 from cartwheel.errors import DescriptionError, Diagnostic
 
 
@@ -35,15 +43,31 @@ def controller_files_of(
             path = resolved(packages, element)
             if isinstance(path, Path):
                 found.append((robot, ControlFile(path=path, named=True, element=element)))
-        if not given and is_of_ros1(robot):
-            file = Path(robot.description.origin.file)
-            joints = [joint.name for joint in robot.joints.values() if joint.type != "fixed"]
-            found += [
-                (robot, ControlFile(path=path, named=False))
-                for path in files_for(file, joints, within=repository_of(file))
-                if _belongs(path, file)
-            ]
+        if not given:
+            near = dict.fromkeys((*_near(robot), *_launched(robot, packages.package_path)))
+            found += [(robot, ControlFile(path=path, named=False)) for path in near]
     return found
+
+
+def _near(robot: Robot) -> Iterator[Path]:
+    """The files near a robot of ROS 1 that contain its joints."""
+    if is_of_ros1(robot):
+        file = Path(robot.description.origin.file)
+        joints = [joint.name for joint in robot.joints.values() if joint.type != "fixed"]
+        found = files_for(file, joints, within=repository_of(file))
+        yield from (path for path in found if _belongs(path, file))
+
+
+def _launched(robot: Robot, package_path: Sequence[Path]) -> Iterator[Path]:
+    """The files that launch files load for the controllers of a robot that names none."""
+    description = robot.description
+    file = Path(description.origin.file)
+    folder = root_of(file)
+    if folder is None or not lacks_controllers(description):
+        return
+    launches = own_launches(file, launches_near(folder, package_path))
+    chosen_files = selection(description, chosen(file, launches), launches, within=own_folder(file))
+    yield from (_plain(path) for path in chosen_files.files)
 
 
 def named_files(robot: Robot) -> Iterator[Element]:
