@@ -100,6 +100,51 @@ def test_what_only_the_execution_determines_is_reported(bot: Path) -> None:
     ]
 
 
+FUNCTION = """
+def robot(kind):
+    if kind == "small":
+        return "none.xacro"
+    {condition}
+        return "other.xacro"
+    return "bot.xacro"
+
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory("bot"), "urdf", robot("large"))
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{{"robot_description": Command(["xacro ", file])}}]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    "condition",
+    ['if os.environ["KIND"] == "x":', "for each in os.listdir():", "while os.getpid():"],
+)
+def test_a_function_that_may_return_different_values_is_reported(bot: Path, condition: str) -> None:
+    file = written(bot, "a.launch.py", FUNCTION.format(condition=condition))
+    start = read_launch(file, {})
+    assert start.models[0].description.name == "bot.xacro"
+    (found,) = coded(start, LAUNCH_VALUE_UNKNOWN, what="return")
+    assert (found.values["name"], found.values["used"]) == ("robot", "7")
+    assert (found.origin.file, found.origin.line) == (str(file), 6)
+
+
+@pytest.mark.parametrize("condition", ['if kind == "x":', "if False:", "if None:"])
+def test_a_function_with_a_known_condition_is_not(bot: Path, condition: str) -> None:
+    file = written(bot, "a.launch.py", FUNCTION.format(condition=condition))
+    start = read_launch(file, {})
+    assert start.models[0].description.name == "bot.xacro"
+    assert not start.diagnostics
+
+
+def test_a_function_that_returns_the_same_value_twice_is_not(bot: Path) -> None:
+    text = FUNCTION.format(condition='if os.environ["KIND"] == "x":')
+    text = text.replace("other.xacro", "bot.xacro")
+    assert not read_launch(written(bot, "a.launch.py", text), {}).diagnostics
+
+
 @pytest.mark.parametrize(
     ("process", "world"),
     [

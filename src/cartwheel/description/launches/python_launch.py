@@ -7,7 +7,6 @@ other.
 from __future__ import annotations
 
 import ast
-import contextlib
 import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
@@ -40,6 +39,7 @@ from cartwheel.description.launches.python_values import (
     Unknown,
     combined,
     concatenated,
+    differ,
     is_known,
     items,
     joined,
@@ -48,7 +48,8 @@ from cartwheel.description.launches.python_values import (
     text,
 )
 from cartwheel.description.launches.spawning import resolved, split
-from cartwheel.description.launches.use import SUFFIXES, Facts
+from cartwheel.description.launches.use import Facts
+from cartwheel.description.launches.variants import SUFFIXES
 
 _STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
 """Actions that start nodes or read files."""
@@ -94,6 +95,7 @@ class _Reader:
         facts: Facts,
         depth: int,
     ) -> None:
+        self._path = path
         self.defaults = dict(defaults)
         self._given = given
         self._facts = facts
@@ -104,8 +106,8 @@ class _Reader:
         """The functions of the file that the file itself calls."""
         self._calls = 0
         """The number of these functions that are being evaluated."""
-        self._result: Any = NOTHING
-        """The value that the last of them returns."""
+        self._returned: list[tuple[int, Any]] = []
+        """The lines of the ``return`` statements of the last of them, and their values."""
         self._started: list[Later] = []
         """The actions that are assigned to variables."""
 
@@ -119,14 +121,8 @@ class _Reader:
             self._facts.namespace = space
         for each in self._started:
             if not each.skipped:
-                with self._within(each.space):
+                with self._facts.within(each.space):
                     each.start()
-
-    @contextlib.contextmanager
-    def _within(self, space: str) -> Iterator[None]:
-        before, self._facts.namespace = self._facts.namespace, space
-        yield
-        self._facts.namespace = before
 
     def block(self, statements: Iterable[ast.stmt]) -> _End:
         """Evaluates statements in their order; of branches, all that may be executed.
@@ -152,7 +148,8 @@ class _Reader:
             elif isinstance(each, ast.Expr):
                 self.value(each.value)
             elif isinstance(each, ast.Return):
-                self._result = NOTHING if each.value is None else self.value(each.value)
+                value = None if each.value is None else self.value(each.value)
+                self._returned.append((each.lineno, value))
                 return "return"
             elif isinstance(each, ast.Break | ast.Continue):
                 return "break" if isinstance(each, ast.Break) else "continue"
@@ -308,6 +305,8 @@ class _Reader:
                 return bool((left == right) == isinstance(test.ops[0], ast.Eq))
             return None
         value = self.value(test)
+        if value is None or isinstance(value, bool | int | float):
+            return bool(value)
         return value != "" if is_known(value) else None
 
     def _call(self, node: ast.Call, *, later: bool = False) -> Any:
@@ -400,7 +399,11 @@ class _Reader:
                 found.skipped = True
 
     def _called(self, function: ast.FunctionDef, places: list[Any], words: dict[str, Any]) -> Any:
-        """The value that a function of the file returns for these arguments."""
+        """The value that a function of the file returns for these arguments.
+
+        If a ``return`` is in a branch whose condition is unknown, the value is that of the last
+        ``return`` that may be executed, and this is noted if the values differ.
+        """
         if self._calls >= _DEEPEST_CALL:
             return NOTHING
         self._facts.effort.spend(len(self._names))
@@ -418,12 +421,18 @@ class _Reader:
         given |= {name: value for name, value in words.items() if name in given}
         self._names = {**outside, **given}
         self._calls += 1
-        self._result = NOTHING
+        before, self._returned = self._returned, []
         self.block(function.body)
+        found, self._returned = self._returned, before
         self._calls -= 1
         self._names = outside
-        result, self._result = self._result, NOTHING
-        return result
+        if not found:
+            return NOTHING
+        (first, _), (last, value) = found[0], found[-1]
+        if differ(each for _, each in found):
+            place = (self._path, first)
+            self._facts.uncertain.setdefault(place, (function.name, last))
+        return NOTHING if value is None else value
 
     def opaque(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Calls a function of the file with the arguments that it is given."""

@@ -159,6 +159,16 @@ def loaded(path: str, effort: Effort) -> Any:
         return NOTHING
 
 
+def differ(values: Iterable[Any]) -> bool:
+    """Whether a value is known and another one is not equal to it."""
+    found: set[tuple[bool, Any]] = set()
+    for value in values:
+        said: Any = joined(value).strip(UNKNOWN) if not isinstance(value, Description) else ""
+        described = isinstance(value, Description)
+        found.add((described, value.number if described else said))
+    return len(found) > 1
+
+
 def is_known(*values: Any) -> bool:
     """Whether values are texts that are completely known."""
     return all(isinstance(each, str) and UNKNOWN not in each for each in values)

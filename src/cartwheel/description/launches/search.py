@@ -15,7 +15,8 @@ from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.python_launch import read_python
-from cartwheel.description.launches.use import Facts, LaunchUse, beside, only_loaded
+from cartwheel.description.launches.use import Facts, LaunchUse, only_loaded
+from cartwheel.description.launches.variants import beside
 from cartwheel.description.launches.xml_launch import read_xml
 
 _FOLDER = 100

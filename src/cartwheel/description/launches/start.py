@@ -157,6 +157,16 @@ def _unknown(
     for what, text in _PARTS.items():
         if any(what in each.spawn.unknown for each in models):
             yield _lost(file, f"{text} of a model is unknown, {_WHY}", what=what)
+    for (path, line), (name, used) in facts.uncertain.items():
+        yield _lost(
+            path,
+            f'which value the function "{name}" returns is unknown, {_WHY}; that in line {used} '
+            "is used",
+            what="return",
+            line=line,
+            name=name,
+            used=str(used),
+        )
     for name in facts.lost_bridges:
         yield _lost(
             file,
@@ -190,10 +200,10 @@ def _not_found(facts: Facts) -> str:
     return f"Not found: {shown}. {advice}"
 
 
-def _lost(file: Path, text: str, hint: str = "", **values: str) -> Diagnostic:
+def _lost(file: Path, text: str, hint: str = "", *, line: int = 0, **values: str) -> Diagnostic:
     return codes.LAUNCH_VALUE_UNKNOWN.diagnostic(
         text,
-        origin=Origin(file=str(file)),
+        origin=Origin(file=str(file), line=line),
         hint=hint,
         values=values,
     )

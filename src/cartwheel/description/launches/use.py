@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shlex
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -31,6 +32,7 @@ from cartwheel.description.launches.spawning import (
     split,
     world_in,
 )
+from cartwheel.description.launches.variants import SUFFIXES, beside
 from cartwheel.errors import CartwheelError
 
 ABSENT = -1
@@ -41,36 +43,11 @@ _LOOK = 100
 """Steps of a look at a file or folder."""
 DEEPEST = 6
 """Maximum nesting of included launch files."""
-SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
-"""Ends of the names of descriptions."""
 _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
-
-
-def beside(file: Path, word: str) -> dict[Path, str]:
-    """The descriptions in a file's folder whose names differ from its name only in a word.
-
-    Returns:
-        What stands for the word, by file.
-    """
-    first, *rest = (re.escape(part) for part in file.name.split(word))
-    if not rest:
-        return {}
-    pattern = re.compile(first + r"(?P<word>[\w.-]+)" + "(?P=word)".join(rest))
-    try:
-        names = sorted(each.name for each in file.parent.iterdir())
-    except OSError:
-        return {}
-    return {
-        file.parent / name: found["word"]
-        for name in names
-        if name.endswith(SUFFIXES)
-        and (found := pattern.fullmatch(name)) is not None
-        and is_file(file.parent / name)
-    }
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -161,8 +138,18 @@ class Facts:
     """Names of the arguments of the launch file itself that can be set."""
     count: int = 0
     """Number of files that were read."""
+    uncertain: dict[tuple[Path, int], tuple[str, int]] = field(default_factory=dict)
+    """Functions in Python that may return different values: the file and line of the first
+    ``return``, with the function's name and the line of the one that is used."""
     defaults: dict[str, str] = field(default_factory=dict)
     """The arguments of the launch file itself that have their default, such as the robot's type."""
+
+    @contextlib.contextmanager
+    def within(self, space: str) -> Iterator[None]:
+        """Reads what is in the block in another namespace."""
+        before, self.namespace = self.namespace, space
+        yield
+        self.namespace = before
 
     def package(self, name: str) -> str:
         """The folder of a package as text, with an unknown part if it is not found."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +55,7 @@ class _Reader:
         if tag in ("arg", "let"):
             self._argument(node)
         elif tag == "group":
-            with self._within(node):
+            with facts.within(self._space(node)):
                 self.group(node)
         elif tag in ("push_ros_namespace", "push-ros-namespace"):
             facts.namespace = self._space(node)
@@ -72,7 +71,7 @@ class _Reader:
             file = self._value(node, "file")
             # In ROS 2, files inherit the arguments of those that include them.
             is_ros2 = file.endswith(".py") or "find-pkg-share" in node.attributes.get("file", "")
-            with self._within(node):
+            with facts.within(self._space(node)):
                 facts.include(file, given, self._depth, self._arguments if is_ros2 else {})
         elif tag == "param":
             self._parameter(node)
@@ -95,19 +94,12 @@ class _Reader:
                     if child.tag == "remap" and self._holds(child)
                 },
             )
-            with self._within(node):
+            with facts.within(self._space(node)):
                 self.group(node)
             for child in node.children if package in BRIDGES else ():
                 named = child.attributes.get("name") if child.tag == "param" else None
                 if named == "config_file" and self._holds(child):
                     facts.bridge(self._value(child, "value"))
-
-    @contextlib.contextmanager
-    def _within(self, node: Node) -> Iterator[None]:
-        """Within the block, the namespace is that of an element."""
-        space, self._facts.namespace = self._facts.namespace, self._space(node)
-        yield
-        self._facts.namespace = space
 
     def _space(self, node: Node) -> str:
         """The namespace of an element."""
