@@ -121,6 +121,7 @@ def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
     robots = tuple(
         Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
     )
+    control, launched = controller_files_of(robots, opened.packages, given)
     subject = Subject(
         root=opened.root,
         files=opened.files,
@@ -129,7 +130,8 @@ def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
         robots=robots,
         failures=tuple(failures),
         gaps=tuple(gaps),
-        control=controller_files_of(robots, opened.packages, given),
+        control=control,
+        launched=tuple(launched),
     )
     for robot in robots:
         robot.controlled = controlled_sides(subject, robot)

@@ -19,8 +19,8 @@ from cartwheel.description.launches import (
     root_of,
 )
 from cartwheel.description.model import Element
-from cartwheel.dialects.ros_control.selection import selection
-from cartwheel.dialects.ros_control.suggestion import files_for, lacks_controllers
+from cartwheel.dialects.ros_control.selection import Selection, selection
+from cartwheel.dialects.ros_control.suggestion import files_for, is_controlled
 from cartwheel.errors import DescriptionError, Diagnostic
 
 
@@ -28,15 +28,16 @@ def controller_files_of(
     robots: Sequence[Robot],
     packages: Packages,
     given: Sequence[Path],
-) -> list[tuple[Robot, ControlFile]]:
-    """The controller files of each robot.
+) -> tuple[list[tuple[Robot, ControlFile]], list[Diagnostic]]:
+    """The controller files of each robot, and the mistakes in launch files that start controllers.
 
     Args:
         robots: Robots in the description.
         packages: Resolves package URIs.
         given: Files from the user; no other files are searched.
     """
-    found = []
+    found: list[tuple[Robot, ControlFile]] = []
+    problems: list[Diagnostic] = []
     for robot in robots:
         found += [(robot, ControlFile(path=_plain(path), named=True)) for path in given]
         for element in named_files(robot):
@@ -44,9 +45,11 @@ def controller_files_of(
             if isinstance(path, Path):
                 found.append((robot, ControlFile(path=path, named=True, element=element)))
         if not given:
-            near = dict.fromkeys((*_near(robot), *_launched(robot, packages.package_path)))
+            launched = _launched(robot, packages.package_path)
+            near = dict.fromkeys((*_near(robot), *map(_plain, launched.files)))
             found += [(robot, ControlFile(path=path, named=False)) for path in near]
-    return found
+            problems += launched.problems
+    return found, problems
 
 
 def _near(robot: Robot) -> Iterator[Path]:
@@ -58,16 +61,15 @@ def _near(robot: Robot) -> Iterator[Path]:
         yield from (path for path in found if _belongs(path, file))
 
 
-def _launched(robot: Robot, package_path: Sequence[Path]) -> Iterator[Path]:
-    """The files that launch files load for the controllers of a robot that names none."""
-    description = robot.description
-    file = Path(description.origin.file)
+def _launched(robot: Robot, package_path: Sequence[Path]) -> Selection:
+    """What launch files load for the controllers of a robot."""
+    file = Path(robot.description.origin.file)
     folder = root_of(file)
-    if folder is None or not lacks_controllers(description):
-        return
+    if folder is None or not is_controlled(robot.description):
+        return Selection(files=(), names=())
     launches = own_launches(file, launches_near(folder, package_path))
-    chosen_files = selection(description, chosen(file, launches), launches, within=own_folder(file))
-    yield from (_plain(path) for path in chosen_files.files)
+    use = chosen(file, launches)
+    return selection(robot.description, use, launches, within=own_folder(file))
 
 
 def named_files(robot: Robot) -> Iterator[Element]:

@@ -41,6 +41,8 @@ class Subject:
     """Origins of elements that lost an unreadable child, and of their parents."""
     control: Sequence[tuple[Robot, ControlFile]] = ()
     """Controller files of each robot."""
+    launched: Sequence[Diagnostic] = ()
+    """Mistakes in the launch files that start the controllers."""
 
     @property
     def is_urdf(self) -> bool:
