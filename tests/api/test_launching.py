@@ -250,6 +250,50 @@ def test_a_published_model_that_the_world_contains_is_not_spawned(package: Path)
         assert world.models == ("ground_plane", "pillar")
 
 
+IN_WORLD = """<sdf version="1.8"><world name="hall"><model name="slider">
+<link name="base"><inertial><mass>5</mass></inertial></link>
+<link name="bar"><inertial><mass>1</mass></inertial></link>
+<joint name="foot" type="fixed"><parent>world</parent><child>base</child></joint>
+<joint name="slide" type="prismatic"><parent>base</parent><child>bar</child><axis><xyz>1 0 0</xyz>
+<limit><lower>-1</lower><upper>1</upper><effort>100</effort></limit></axis></joint>
+<plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin"/>
+</model></world></sdf>"""
+PUBLISHED = """
+        IncludeLaunchDescription(
+            PythonLaunchDescriptionSource(
+                [FindPackageShare("ros_gz_sim"), "/launch/gz_sim.launch.py"]),
+            launch_arguments={"gz_args": ["-r ", share, "/worlds/hall.world"]}.items()),
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": Command(["xacro ", share, "/urdf/slider.urdf"])}]),
+        Node(package="robot_state_publisher", executable="robot_state_publisher", namespace="cart",
+             parameters=[{"robot_description": Command(["xacro ", share, "/urdf/cart.xacro"])}]),
+"""
+
+
+@pytest.mark.parametrize(
+    "source", ['"-topic", "cart/robot_description"', '"-file", share + "/urdf/cart.xacro"', ""]
+)
+def test_a_published_model_of_the_world_and_spawned_ones_are_all_there(
+    package: Path, source: str
+) -> None:
+    """Without a spawner, the second published model is in no world, as in Gazebo."""
+    (package / "worlds/hall.world").write_text(IN_WORLD)
+    line = next(each for each in STARTER.split("\n") if '"create"' in each)
+    create = f"""Node(package="ros_gz_sim", executable="create",
+             arguments=["-name", "two", "-y", "3", {source}]),"""
+    text = STARTER.replace(line, PUBLISHED + (create if source else ""))
+    file = package / "launch/both.launch.py"
+    file.write_text("\n".join(each for each in text.split("\n") if "process_file" not in each))
+    with cw.launch(file) as world:
+        assert sorted(world.models) == ["slider", *["two"] * bool(source)]
+        world.publish("/good/commands", data=[0.5])
+        world.run(1.0)
+        assert world.model("slider").joint("slide") == pytest.approx(0.5, abs=1e-3)
+        if source:
+            assert world.model("two").pose.y == pytest.approx(3.0)
+        assert not coded(world, MODEL_NAME_TAKEN)
+
+
 def test_a_model_whose_name_is_taken_is_not_spawned(package: Path) -> None:
     with cw.launch(package / "launch/twins.launch") as world:
         assert world.models == ("pillar", "left")

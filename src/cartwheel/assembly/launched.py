@@ -90,9 +90,9 @@ def open_launch(
     opened, models = _out_of_world(opened, shown, package_path)
     names = {each.name for each in (*opened.models, *(each.description for each in models))}
     robots: dict[object, RobotDescription] = {}
-    for each in start.models:
-        if models and each.is_shown:
-            continue
+    spawned = [each for each in start.models if not each.is_shown]
+    # Of those that are only published, one is shown where there is no other model.
+    for each in spawned or shown[: not models]:
         # Several models may have the same description.
         key = (each.description, frozenset(each.use.arguments.items()))
         if key not in robots:

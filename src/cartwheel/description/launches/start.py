@@ -51,7 +51,7 @@ class LaunchStart:
 
     file: Path
     models: tuple[LaunchedModel, ...]
-    """At least one."""
+    """At least one. Those that are only published are the last."""
     world: str
     """The world as the launch file states it; empty if it states none or an unknown one."""
     bridges: tuple[Path, ...]
@@ -107,6 +107,7 @@ def read_launch(
         for spawn, use in found
         if use is not None and use.description is not None
     )
+    models += tuple(_shown(facts, uses, models))
     models = _with_own_controllers(models, facts)
     if not models:
         required = sorted(facts.declared - {*facts.defaults, *arguments})
@@ -129,7 +130,7 @@ def read_launch(
         renamed=tuple(facts.renamed),
         diagnostics=(
             *_unused(file, arguments, facts),
-            *_unknown(file, world, models, facts),
+            *_unknown(file, world, [each for each in models if not each.is_shown] or models, facts),
             *_not_spawned(file, lost, facts),
         ),
     )
@@ -218,6 +219,20 @@ def _described(facts: Facts, uses: Sequence[LaunchUse]) -> Iterator[tuple[Spawn,
         if number is None and spawn.file is None and others:
             number = facts.published.get(spawn.source, others[0])
         yield spawn, None if number is None or number == ABSENT else uses[number]
+
+
+def _shown(
+    facts: Facts, uses: Sequence[LaunchUse], models: Sequence[LaunchedModel]
+) -> Iterator[LaunchedModel]:
+    """The models that are published and that no spawner spawns: the world may contain them."""
+    known = [each.use for each in models]
+    for source, number in facts.published.items():
+        use = None if number == ABSENT else uses[number]
+        if use is not None and use.description is not None and use not in known:
+            known.append(use)
+            yield LaunchedModel(
+                description=use.description, use=use, spawn=Spawn(source=source), is_shown=True
+            )
 
 
 def _with_own_controllers(
