@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -148,6 +149,19 @@ def turning_rate(track, wheelbase, shift, turn):
         return sum(pull(side, ahead, rate)[1] for side in (-1, 1))
 
     return bisect(torque, 1e-6, turn)
+
+
+@pytest.mark.parametrize("inertia", [1e-4, 1e-6])
+def test_light_wheels_of_a_heavy_skid_steer_follow_their_motors(make, inertia):
+    """Their motors do not slip, although the inertia is 25 to 2500 times too small."""
+    base = skid_steer(1.0)
+    wheel = r"(<mass>0.5</mass><inertia>).*?</inertia>"
+    light = "".join(f"<{each}>{inertia}</{each}>" for each in ("ixx", "iyy", "izz"))
+    links, count = re.subn(wheel, rf"\1{light}</inertia>", base.links, flags=re.DOTALL)
+    assert count == 4
+    links = links.replace("<mass>20</mass>", "<mass>200</mass>")
+    _, rate = motion(driven(make, replace(base, links=links, torque=500.0)), turn=RATE)
+    assert rate == pytest.approx(RATE / 2, rel=0.02)
 
 
 def test_a_skid_steer_that_drags_a_ball_keeps_its_speed(make):

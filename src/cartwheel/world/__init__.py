@@ -1,7 +1,7 @@
 """Compiles descriptions to a MuJoCo model."""
 
 from cartwheel.world import mujoco_import  # noqa: F401 - before all others
-from cartwheel.world.actuation import rotor_strength
+from cartwheel.world.actuation import rotor_strength, stiffen_rotors
 from cartwheel.world.additions import reports
 from cartwheel.world.build import (
     Build,
@@ -25,6 +25,7 @@ __all__ = [
     "principal_inertial",
     "reports",
     "rotor_strength",
+    "stiffen_rotors",
     "unreadable",
     "unused",
 ]

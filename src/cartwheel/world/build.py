@@ -12,7 +12,7 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import WorldError
 from cartwheel.world import contact, joints, pairs
-from cartwheel.world.actuation import ROTOR_INERTIA
+from cartwheel.world.actuation import ROTOR_INERTIA, stiffen_rotors
 from cartwheel.world.additions import Added, Addition
 from cartwheel.world.bodies import BodyBuilder, Shapes
 from cartwheel.world.chains import drag_chains
@@ -168,6 +168,7 @@ def _built(
         for option in (spec.option, model.opt):
             option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     exclude_rotors(model)
+    stiffen_rotors(model)
     divide_floors(model)
     added = [*bodies.added, *rules.added]
     if "chain-drag" not in without:

@@ -25,6 +25,7 @@ from cartwheel.world import (
     extend_at_rest,
     principal_inertial,
     rotor_strength,
+    stiffen_rotors,
 )
 from cartwheel.world.additions import Added
 from cartwheel.world.contact import BuiltSurface, friction, reference
@@ -219,6 +220,7 @@ class InPlace:
             mujoco.mj_setConst(model, self._scratch)
             exclude_rotors(model)
             extend_at_rest(model)
+            stiffen_rotors(model)
         return self.drag()
 
     def drag(self) -> list[Added]:
