@@ -164,6 +164,15 @@ def test_light_wheels_of_a_heavy_skid_steer_follow_their_motors(make, inertia):
     assert rate == pytest.approx(RATE / 2, rel=0.02)
 
 
+def test_a_motor_replaces_the_dry_friction_of_its_wheel(make):
+    """ODE's parameter FMax is both, so friction of twice the motor's torque holds nothing."""
+    base = two_wheels()
+    rough = f"<dynamics><friction>{2 * base.torque}</friction></dynamics></axis>"
+    world = driven(make, replace(base, links=base.links.replace("</axis>", rough)))
+    speed, _ = motion(world, forward=SPEED)
+    assert speed == pytest.approx(SPEED, rel=0.01)
+
+
 def test_a_skid_steer_that_drags_a_ball_keeps_its_speed(make):
     """Gazebo loses 3 to 6 % with a ball like this; wheels with softer friction lose a quarter."""
     base = skid_steer(1.0)

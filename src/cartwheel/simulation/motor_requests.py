@@ -45,6 +45,7 @@ class MotorRequests(Requests):
         *,
         max_effort: float | None,
         beyond: bool = False,
+        replaces_friction: bool = False,
         yields: bool = False,
         origin: Origin | None = None,
     ) -> MotorHandle:
@@ -57,13 +58,21 @@ class MotorRequests(Requests):
             joint: Joint name.
             max_effort: N m or N.
             beyond: Whether `max_effort` may exceed the joint's effort limit.
+            replaces_friction: Whether the joint's own dry friction has no effect. ODE uses one
+                parameter for friction and the maximum torque of a motor.
             yields: Whether the caller leaves the joint to others while it has no command for it. It
                 then reports itself when both drive the joint.
             origin: Origin of the request, for errors.
         """
         self.joint(joint, origin=origin)
         motor = self._entry.motors.get(joint)
-        made = Motor(joint=joint, mode="velocity", max_effort=max_effort, beyond=beyond)
+        made = Motor(
+            joint=joint,
+            mode="velocity",
+            max_effort=max_effort,
+            beyond=beyond,
+            replaces_friction=replaces_friction,
+        )
         if motor is not None and motor.mode == "servo":
             motor = self._share(motor, max_effort)
         elif motor is None or (not yields and all(each.yields for each in self._drives(joint))):

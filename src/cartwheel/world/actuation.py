@@ -28,7 +28,7 @@ ROTOR_INERTIA = 1e6
 _STRONGEST = 1e6
 """N m or N; limit of a motor without a stated limit."""
 _SLIP = 0.002
-"""m/s; maximum slip between the rim of a wheel and its rotor under the weight of the whole model."""
+"""m/s; maximum slip between a rim and its rotor under the weight of the whole model."""
 _GRAVITY = 9.8
 """m/s²."""
 _WORLD_SITE = "world::site"

@@ -49,6 +49,8 @@ class Motor:
     """N m or N; None is unlimited."""
     beyond: bool = False
     """Whether holding a position or velocity may exceed the joint's effort limit."""
+    replaces_friction: bool = False
+    """Whether the joint's own dry friction has no effect, as with a motor of ODE."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

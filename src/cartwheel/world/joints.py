@@ -38,6 +38,7 @@ def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -
         case "revolute" | "continuous" | "prismatic":
             follows = joint.name in entry.mimics
             made = _add_axis(body, name, joint, joint.axis, follows=follows)
+            made.frictionloss = friction_of(entry, joint, joint.axis)
             made.type = _KIND.mjJNT_SLIDE if joint.type == "prismatic" else _KIND.mjJNT_HINGE
         case "ball":
             body.add_joint(name=name, type=_KIND.mjJNT_BALL, pos=pos)
@@ -89,6 +90,12 @@ def limits_of(joint: Joint, axis: Axis, *, follows: bool) -> tuple[float, float]
     # The engine requires a range; equal limits lock a joint, as in ODE.
     slack = _LOCKED if axis.locks else 0.0
     return lower - slack, upper + slack
+
+
+def friction_of(entry: ModelEntry, joint: Joint, axis: Axis) -> float:
+    """The dry friction of an axis, N m or N; 0 if a motor of the model replaces it."""
+    motor = entry.motors.get(joint.name)
+    return 0.0 if motor is not None and motor.replaces_friction else axis.friction
 
 
 def couple(

@@ -34,7 +34,8 @@ class Wheel:
     Args:
         part: The model's part of the simulation.
         joint: Name of the joint.
-        max_effort: Maximum torque, N m; None: the effort limit of the joint.
+        max_effort: Maximum torque, N m, which replaces the joint's dry friction, as in ODE;
+            None: the effort limit of the joint.
         limited: Whether the joint's velocity limit applies.
         beyond: Whether the torque may exceed the joint's effort limit.
         origin: Origin for errors.
@@ -56,7 +57,11 @@ class Wheel:
         self.state = part.joint(joint, origin=origin)
         self._fastest = velocity_limit(part.description.joint(joint)) if limited else math.inf
         self._motor = part.velocity_motor(
-            joint, max_effort=max_effort, beyond=beyond, origin=origin
+            joint,
+            max_effort=max_effort,
+            beyond=beyond,
+            replaces_friction=max_effort is not None,
+            origin=origin,
         )
 
     @property

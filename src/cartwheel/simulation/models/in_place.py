@@ -31,7 +31,7 @@ from cartwheel.world.additions import Added
 from cartwheel.world.contact import BuiltSurface, friction, reference
 from cartwheel.world.contact_rules import ContactRules, contact_rules
 from cartwheel.world.entry import ROTOR, ModelEntry, Motor, collision_of, scoped
-from cartwheel.world.joints import axes_of, limits_of
+from cartwheel.world.joints import axes_of, friction_of, limits_of
 from cartwheel.world.pairs import Pair
 from cartwheel.world.visuals import plain_colour
 
@@ -184,7 +184,7 @@ class InPlace:
                 continue
             dof = int(model.jnt_dofadr[index])
             model.dof_damping[dof] = axis.damping
-            model.dof_frictionloss[dof] = axis.friction
+            model.dof_frictionloss[dof] = friction_of(entry, joint, axis)
             model.jnt_stiffness[index] = axis.spring_stiffness
             springs = bool(axis.spring_stiffness)
             model.qpos_spring[model.jnt_qposadr[index]] = axis.spring_reference if springs else 0.0
