@@ -17,7 +17,7 @@ WHEELS = """drive:
 RULES = {
     "controllers-file-unreadable", "controller-joint-unknown", "controller-type-unknown",
     "controller-interface-mismatch", "controller-gains-missing", "joint-claimed-twice", "wheel-separation-mismatch",
-    "wheel-base-mismatch", "wheel-diameter-mismatch",
+    "wheel-base-mismatch", "wheel-diameter-mismatch", "controller-parameter-repeated",
 }  # fmt: skip
 
 
@@ -198,3 +198,16 @@ def test_one_controller_may_be_a_file(arm, received):
     assert received(arm, "\n".join(lines)) == []
     (finding,) = received(arm, "\n".join(lines).replace("arm_joint", "arm_jiont"))
     assert finding.origin.line == 2
+
+
+def test_of_a_repeated_key_the_last_value_counts(spoil, received):
+    wheels = [
+        transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
+        for side in ("left", "right")
+    ]
+    once = WHEELS.replace("  type", "  wheel_separation_multiplier: 10.0\n  type")
+    (wrong,) = received(spoil(ROS1, *wheels), once)
+    assert wrong.code.name == "wheel-separation-mismatch"
+    (repeated,) = received(spoil(ROS1, *wheels), f"{once}  wheel_separation_multiplier: 1.0\n")
+    assert repeated.code.name == "controller-parameter-repeated"
+    assert (repeated.origin.line, repeated.values["line"]) == (2, 8)

@@ -223,7 +223,36 @@ class ControlFile:
 
 
 def pairs(node: Any) -> list[tuple[Any, Any]]:
-    """The key-value pairs of a mapping; empty for any other node."""
+    """The key-value pairs of a mapping; empty for any other node.
+
+    Of a repeated key, the last one counts, as in ROS.
+    """
+    return list({key.value: (key, value) for key, value in _all_pairs(node)}.values())
+
+
+def repeated_keys(node: Any) -> Iterator[tuple[Any, Any]]:
+    """Each key that a later one in the same mapping replaces, with the later one.
+
+    Args:
+        node: A node, or None; its mappings are searched at any depth.
+    """
+    remaining, seen = [node], set[int]()
+    while remaining:
+        one = remaining.pop()
+        if one is None or id(one) in seen or one.id == "scalar":
+            continue
+        seen.add(id(one))
+        if one.id == "sequence":
+            remaining += one.value
+            continue
+        last = {key.value: key for key, _ in _all_pairs(one)}
+        for key, value in _all_pairs(one):
+            if key is not last[key.value]:
+                yield key, last[key.value]
+            remaining.append(value)
+
+
+def _all_pairs(node: Any) -> list[tuple[Any, Any]]:
     if node is None or node.id != "mapping":
         return []
     return [(key, value) for key, value in node.value if key.id == "scalar"]

@@ -291,3 +291,9 @@ CONTROLLER_ONLY_LOADED = Code(
     "warning",
     "a launch file loads a controller, but does not start it",
 )
+CONTROLLER_PARAMETER_REPEATED = Code(
+    "CW489",
+    "controller-parameter-repeated",
+    "warning",
+    "a file of controllers repeats a key",
+)

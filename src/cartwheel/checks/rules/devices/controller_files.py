@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from cartwheel.checks.controller_files import repeated_keys
 from cartwheel.checks.controller_search import named_files, resolved
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -21,3 +22,18 @@ def controllers_file(subject: Subject) -> Iterator[Diagnostic]:
     for _, file in subject.control:
         if file.problem is not None:
             yield file.problem
+
+
+@rule(devices_codes.CONTROLLER_PARAMETER_REPEATED)
+def repeated_parameters(subject: Subject) -> Iterator[Diagnostic]:
+    files = {file.path: file for _, file in subject.control}
+    for file in files.values():
+        for key, last in repeated_keys(file.root):
+            line = last.start_mark.line + 1
+            yield devices_codes.CONTROLLER_PARAMETER_REPEATED.diagnostic(
+                message=f'"{key.value}" is repeated in line {line}, and only the last value is used',
+                values={"name": key.value, "line": line},
+                origin=file.origin(key),
+                hint="Remove one of them.",
+                mark=key.value,
+            )
