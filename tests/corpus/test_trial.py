@@ -13,6 +13,7 @@ from cartwheel.api import World
 from cartwheel.api.motion import Twist
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.devices import (
+    CONTROL_WITHOUT_JOINTS,
     CONTROLLER_GAIN_TOO_LOW,
     CONTROLLER_GAINS_MISSING,
     CONTROLLER_INTERFACE_MISMATCH,
@@ -665,6 +666,28 @@ def test_an_arm_that_nothing_drives_falls_and_the_reason_is_reported(tried):
     assert verdict.stand.state in ("tips", "moves"), verdict.stand
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("stand", JOINTS_UNDRIVEN, "file")
+
+
+def test_an_arm_whose_hardware_names_other_joints_falls_and_the_reason_is_reported(tmp_path, tried):
+    """A running broadcaster holds no joint."""
+    upper = ARM[ARM.index('<link name="upper">') : ARM.index('<joint name="stand"')]
+    joint = ARM[ARM.index('<joint name="shoulder"') : ARM.index("<transmission")]
+    upper = upper.replace('xyz="0 0 0.1"', 'xyz="0.02 0 0.5"').replace('"1"/>', '"3"/>')
+    joint = joint.replace('lower="-1" upper="1"', 'lower="-2" upper="2"')
+    (tmp_path / "arm.yaml").write_text(
+        "controller_manager:\n  ros__parameters:\n    states:\n"
+        "      type: joint_state_broadcaster/JointStateBroadcaster\n"
+    )
+    control = f"""<ros2_control name="arm" type="system"><hardware>
+      <plugin>gazebo_ros2_control/GazeboSystem</plugin></hardware>
+      <joint name="Shoulder"><command_interface name="position"/></joint></ros2_control>
+      <gazebo><plugin name="c" filename="libgazebo_ros2_control.so">
+      <parameters>{tmp_path}/arm.yaml</parameters></plugin></gazebo>"""
+    verdict = tried(BOX.format(name="base", at="0 0 0", size="0.2 0.2 0.1"), upper, joint, control)
+    assert verdict.controllers == ("states",)
+    stand = next(fault for fault in verdict.faults if fault.test == "stand")
+    assert (stand.code, stand.source) == (CONTROL_WITHOUT_JOINTS, "file")
+    assert '"Shoulder"' in stand.reason.message
 
 
 def test_an_arm_whose_controller_waits_for_a_command_falls_and_the_reason_is_reported(

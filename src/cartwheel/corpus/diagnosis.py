@@ -91,7 +91,8 @@ def faults(
     }
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
-    yield from _measured(verdict, description, findings, idle if not verdict.controllers else None)
+    moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights
+    yield from _measured(verdict, description, findings, None if moved else idle)
 
 
 def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> Iterator[Fault]:
@@ -208,14 +209,19 @@ def _measured(
 ) -> Iterator[Fault]:
     """The failed tests of a robot that was loaded, with reasons.
 
-    `idle` is the reason why no controller holds the joints; None if one runs or none is needed.
+    `idle` is the reason why no controller holds the joints, apart from those that only publish;
+    None if one does or none is needed.
     """
     children = {joint.name: joint.child for joint in description.joints}
     said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
     if verdict.stand is not None and not verdict.stands:
         lost = next((each for each in said if _is_body_lost(each, description)), None)
-        reasons = [each for each in (*said, *findings()) if _explains_fall(each)]
+        reasons = [
+            each
+            for each in (*said, *findings())
+            if _explains_fall(each) and (idle is None or each.code is not robot.JOINTS_UNDRIVEN)
+        ]
         fallen = lost or most_severe(reasons) or idle
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:

@@ -27,6 +27,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     SYSTEMS,
     JointInterfaces,
     hardware_of,
+    no_joints,
     ros2_control,
     simulated_systems,
 )
@@ -121,7 +122,7 @@ class Ros2Control(ControlPlugin):
         if not joints:
             self.warn(
                 devices.CONTROL_WITHOUT_JOINTS,
-                "no <ros2_control> element lists a joint, so controllers have no joint to command",
+                no_joints("<ros2_control>", notes),
             )
         known = {sensor.name for link in part.description.links for sensor in link.sensors}
         for sensor in sensors:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST, MOST_RATIO
@@ -197,6 +198,28 @@ def ros2_control(
             for element in system.find_all("gpio")
         ]
     return list(joints.values()), sensors, notes
+
+
+def no_joints(
+    listed_in: Literal["<transmission>", "<ros2_control>"], notes: Sequence[Diagnostic]
+) -> str:
+    """Why controllers have no joint to command.
+
+    Args:
+        listed_in: The element that lists joints.
+        notes: Reports of the elements, which may list joints that do not exist.
+    """
+    codes = (devices.ROS2_CONTROL_JOINT_UNKNOWN, devices.TRANSMISSION_JOINT_UNKNOWN)
+    unknown = [f'"{each.values["joint"]}"' for each in notes if each.code in codes]
+    if not unknown:
+        verb = "drives" if listed_in == "<transmission>" else "element lists"
+        return f"no {listed_in} {verb} a joint, so controllers have no joint to command"
+    more = f" and {len(unknown) - 2} more" if len(unknown) > 3 else ""
+    names = ", ".join(unknown[: 2 if more else 3])
+    return (
+        f"none of the joints in {listed_in} is a movable joint of the robot, so controllers have "
+        f"no joint to command: {names}{more}"
+    )
 
 
 def _together(one: JointInterfaces, other: JointInterfaces) -> JointInterfaces:

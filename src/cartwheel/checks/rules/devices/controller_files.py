@@ -31,7 +31,7 @@ def repeated_parameters(subject: Subject) -> Iterator[Diagnostic]:
         for key, last in repeated_keys(file.root):
             line = last.start_mark.line + 1
             yield devices_codes.CONTROLLER_PARAMETER_REPEATED.diagnostic(
-                message=f'"{key.value}" is repeated in line {line}, and only the last value is used',
+                message=f'"{key.value}" is repeated in line {line}, and only the last one is used',
                 values={"name": key.value, "line": line},
                 origin=file.origin(key),
                 hint="Remove one of them.",
