@@ -687,7 +687,7 @@ def test_an_arm_whose_hardware_names_other_joints_falls_and_the_reason_is_report
     assert verdict.controllers == ("states",)
     stand = next(fault for fault in verdict.faults if fault.test == "stand")
     assert (stand.code, stand.source) == (CONTROL_WITHOUT_JOINTS, "file")
-    assert '"Shoulder"' in stand.reason.message
+    assert stand.reason.values["joints"] == ("Shoulder",)
 
 
 def test_an_arm_whose_controller_waits_for_a_command_falls_and_the_reason_is_reported(

@@ -30,6 +30,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     no_joints,
     ros2_control,
     simulated_systems,
+    unknown_joints,
 )
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.settings import Settings
@@ -122,7 +123,8 @@ class Ros2Control(ControlPlugin):
         if not joints:
             self.warn(
                 devices.CONTROL_WITHOUT_JOINTS,
-                no_joints("<ros2_control>", notes),
+                no_joints("<ros2_control>", unknown_joints(notes)),
+                values={"joints": unknown_joints(notes)},
             )
         known = {sensor.name for link in part.description.links for sensor in link.sensors}
         for sensor in sensors:

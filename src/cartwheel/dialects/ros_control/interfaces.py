@@ -200,22 +200,27 @@ def ros2_control(
     return list(joints.values()), sensors, notes
 
 
+def unknown_joints(notes: Sequence[Diagnostic]) -> tuple[str, ...]:
+    """The listed joints that do not exist or do not move, from the notes about the elements."""
+    codes = (devices.ROS2_CONTROL_JOINT_UNKNOWN, devices.TRANSMISSION_JOINT_UNKNOWN)
+    return tuple(str(each.values["joint"]) for each in notes if each.code in codes)
+
+
 def no_joints(
-    listed_in: Literal["<transmission>", "<ros2_control>"], notes: Sequence[Diagnostic]
+    listed_in: Literal["<transmission>", "<ros2_control>"], unknown: Sequence[str]
 ) -> str:
     """Why controllers have no joint to command.
 
     Args:
         listed_in: The element that lists joints.
-        notes: Reports of the elements, which may list joints that do not exist.
+        unknown: See `unknown_joints`.
     """
-    codes = (devices.ROS2_CONTROL_JOINT_UNKNOWN, devices.TRANSMISSION_JOINT_UNKNOWN)
-    unknown = [f'"{each.values["joint"]}"' for each in notes if each.code in codes]
     if not unknown:
         verb = "drives" if listed_in == "<transmission>" else "element lists"
         return f"no {listed_in} {verb} a joint, so controllers have no joint to command"
-    more = f" and {len(unknown) - 2} more" if len(unknown) > 3 else ""
-    names = ", ".join(unknown[: 2 if more else 3])
+    shown = 2 if len(unknown) > 3 else 3
+    more = f" and {len(unknown) - shown} more" if len(unknown) > 3 else ""
+    names = ", ".join(f'"{name}"' for name in unknown[:shown])
     return (
         f"none of the joints in {listed_in} is a movable joint of the robot, so controllers have "
         f"no joint to command: {names}{more}"

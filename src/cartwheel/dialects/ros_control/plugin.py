@@ -19,7 +19,12 @@ from cartwheel.dialects.ros_control.files import (
 )
 from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import Hardware
-from cartwheel.dialects.ros_control.interfaces import JointInterfaces, no_joints, transmissions
+from cartwheel.dialects.ros_control.interfaces import (
+    JointInterfaces,
+    no_joints,
+    transmissions,
+    unknown_joints,
+)
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.services import Ros1ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
@@ -156,7 +161,8 @@ class RosControl(ControlPlugin):
         if not joints:
             self.warn(
                 devices.CONTROL_WITHOUT_JOINTS,
-                no_joints("<transmission>", notes),
+                no_joints("<transmission>", unknown_joints(notes)),
+                values={"joints": unknown_joints(notes)},
             )
         limits = self._settings("joint_limits") or Settings({}, "joint_limits")
         return Hardware(self, joints, self._gains(joints), limits)
