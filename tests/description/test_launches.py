@@ -362,6 +362,36 @@ def test_robots_that_a_yaml_file_lists_are_known(package, content, names):
     assert [use.arguments["name"] for use in uses if "name" in use.arguments] == names
 
 
+MAPPED = """
+def described(file, sizes):
+    with open(sizes, "r") as opened:
+        values = yaml.safe_load(opened)["/**"]["ros__parameters"]
+    return xacro.process_file(
+        file, mappings={key: str(value) for key, value in values.items()}
+    ).toxml()
+
+def generate_launch_description():
+    folder = get_package_share_directory("arm")
+    text = described(os.path.join(folder, "urdf", "arm.urdf.xacro"),
+                     os.path.join(folder, "config", "sizes.yaml"))
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": text}])])
+"""
+
+
+def test_arguments_of_xacro_that_a_yaml_file_lists_are_known(package):
+    folder = package(sim_dot_launch_dot_py=MAPPED)
+    (folder / "config/sizes.yaml").write_text(
+        "/**:\n  ros__parameters:\n    length: 0.3\n    wheels: 4\n"
+    )
+    (use,) = (use for use in launches_near(folder) if use.description is not None)
+    assert use.arguments == {"length": "0.3", "wheels": "4"}
+    (folder / "config/sizes.yaml").unlink()
+    (use,) = (use for use in launches_near(folder) if use.description is not None)
+    assert use.arguments == {}
+
+
 def test_loops_are_evaluated_for_each_of_their_values(package):
     folder = package(sim_dot_launch_dot_py=LOOPS)
     uses = [use for use in launches_near(folder) if use.description is not None]

@@ -246,6 +246,13 @@ class _Reader:
         self._collect(node.generators, node.elt, found)
         return found
 
+    def _mapped(self, node: ast.DictComp) -> dict[str, Any]:
+        """The known keys of a dictionary comprehension, with their values."""
+        found: list[Any] = []
+        pair = ast.Tuple(elts=[node.key, node.value], ctx=ast.Load())
+        self._collect(node.generators, pair, found)
+        return {text(key): value for key, value in found if is_known(text(key))}
+
     def _collect(self, loops: list[ast.comprehension], item: ast.expr, found: list[Any]) -> None:
         """Adds the values of an expression for all values of the loops' variables."""
         if not loops:
@@ -293,6 +300,8 @@ class _Reader:
             return held.get(key, NOTHING) if known else NOTHING
         if isinstance(node, ast.ListComp | ast.GeneratorExp | ast.SetComp):
             return self._collected(node)
+        if isinstance(node, ast.DictComp):
+            return self._mapped(node)
         if isinstance(node, ast.Call):
             return self._call(node)
         return NOTHING
