@@ -24,11 +24,13 @@ from cartwheel.codes.devices import (
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK, INCLUDE_ABSENT, LINK_RECONNECTED
 from cartwheel.codes.robot import (
     BASE_FIXED,
+    BASE_WITHOUT_COLLISION,
     BODY_ON_GROUND,
     DAMPING_TOO_HIGH,
     DRIVES_APART,
     DUPLICATE_NAME,
     INERTIA_GEOMETRY_MISMATCH,
+    INERTIA_MISSING,
     JOINTS_UNDRIVEN,
     PLANAR_FRICTION,
     SHAPE_OUT_OF_SCALE,
@@ -666,6 +668,16 @@ def test_an_arm_that_nothing_drives_falls_and_the_reason_is_reported(tried):
     assert verdict.stand.state in ("tips", "moves"), verdict.stand
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("stand", JOINTS_UNDRIVEN, "file")
+
+
+def test_what_falls_through_the_ground_has_no_collision(tried):
+    """Its missing inertia, which Gazebo does not accept, is not why it falls."""
+    shape = '<visual><geometry><box size="0.2 0.2 0.1"/></geometry></visual>'
+    verdict = tried(f'<link name="base">{shape}</link>')
+    assert verdict.stand.state == "moves"
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("stand", BASE_WITHOUT_COLLISION, "file")
+    assert any(each.code is INERTIA_MISSING for each in verdict.diagnostics)
 
 
 def test_an_arm_whose_hardware_names_other_joints_falls_and_the_reason_is_reported(tmp_path, tried):

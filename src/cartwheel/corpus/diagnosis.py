@@ -9,7 +9,7 @@ from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
 from cartwheel.corpus.faults import Fault, Test, most_severe
 from cartwheel.corpus.movers import is_known, managers, moving_plugins
-from cartwheel.corpus.verdict import Verdict
+from cartwheel.corpus.verdict import Stand, Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Code, Diagnostic
@@ -47,6 +47,9 @@ _STANDING = frozenset(
         robot.JOINTS_UNDRIVEN,
     }
 )
+_FALLEN = 1.0
+"""m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
+ground."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
 """Lengths in other units, with which shapes are inside each other or kilometres long."""
 _JOINTS = frozenset(
@@ -216,13 +219,7 @@ def _measured(
     said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
     if verdict.stand is not None and not verdict.stands:
-        lost = next((each for each in said if _is_body_lost(each, description)), None)
-        reasons = [
-            each
-            for each in (*said, *findings())
-            if _explains_fall(each) and (idle is None or each.code is not robot.JOINTS_UNDRIVEN)
-        ]
-        fallen = lost or most_severe(reasons) or idle
+        fallen = _cause_of_fall(verdict.stand, description, (*said, *findings()), idle)
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:
         reason = _coded(said, frozenset({world.OPENGL_MISSING}))
@@ -279,6 +276,26 @@ def _explaining(
     """The diagnostics that may explain a failed test, by what the tests showed."""
     hindered = (test, subject) in verdict.hindered
     return [each for each in found if hindered or each.code is not running.JOINT_DRIVEN_TWICE]
+
+
+def _cause_of_fall(
+    stand: Stand,
+    description: RobotDescription,
+    found: Sequence[Diagnostic],
+    idle: Diagnostic | None,
+) -> Diagnostic | None:
+    """Why a robot does not stand; see `_measured` for `idle`."""
+    lost = next((each for each in found if _is_body_lost(each, description)), None)
+    if lost is not None:
+        return lost
+    reasons = [each for each in found if _explains_fall(each)]
+    if stand.sunk > _FALLEN * max(1.0, stand.size):
+        bottomless = _coded(reasons, frozenset({robot.BASE_WITHOUT_COLLISION}))
+        if bottomless is not None:
+            return bottomless
+    if idle is not None:
+        reasons = [each for each in reasons if each.code is not robot.JOINTS_UNDRIVEN]
+    return most_severe(reasons) or idle
 
 
 def _held_bases(
