@@ -5,6 +5,7 @@ import yaml
 from tests.dialects.ros_control.arms import (
     ARM,
     GRAVITY,
+    INERTIA,
     MASS,
     ROS1,
     beam,
@@ -87,6 +88,41 @@ def test_an_effort_limit_below_the_damping_is_reported_and_exceeded(bench, veloc
     assert made.position("beam_joint") == pytest.approx(0.2, abs=0.01)
     (warning,) = [each for each in made.warnings if each.code is devices.EFFORT_LIMIT_TOO_LOW]
     assert warning.values["needed"] == pytest.approx(needed, abs=0.01)
+
+
+@pytest.mark.parametrize("classic", [True, False])
+def test_an_effort_limit_below_the_inertia_is_reported_and_exceeded(bench, tmp_path, classic):
+    """Ten beams in line on vertical axes, which gravity does not load; gz-sim has the limit."""
+    file, names = tmp_path / "own.yaml", [f"b{number}" for number in range(10)]
+    joints = [f"{name}_joint" for name in names]
+    settings = {"type": "position_controllers/JointGroupPositionController", "joints": joints}
+    file.write_text(yaml.safe_dump(ros2_parameters(200, c=settings)))
+    limit = 'lower="-3" upper="3" effort="5" velocity="10"'
+    body = "".join(
+        beam(name, parent, axis="0 0 1", limit=limit, origin=f"{2 * ARM} 0 0")
+        for name, parent in zip(names, ("world", *names), strict=False)
+    )
+    body += ros2_system(*(ros2_joint(joint) for joint in joints))
+    control = ros2_plugin(file)
+    if classic:
+        body = body.replace("gz_ros2_control/GazeboSimSystem", "gazebo_ros2_control/GazeboSystem")
+        control = control.replace("gz_ros2_control-system", "libgazebo_ros2_control.so")
+    made = bench(robot(body, control))
+    made.publish("/c/commands", "std_msgs/msg/Float64MultiArray", data=[0.2] * len(joints))
+    made.world.run(2.0)
+    errors = [abs(made.position(joint) - 0.2) for joint in joints]
+    warnings = [each for each in made.warnings if each.code is devices.EFFORT_LIMIT_TOO_LOW]
+    if not classic:
+        assert warnings == []
+        assert max(errors) > 0.1
+        return
+    assert max(errors) < 1e-3
+    # The first joint accelerates all beams, each about all joints before it.
+    along = [2 * ARM * number + ARM for number in range(10)]
+    turned = sum(INERTIA * (n + 1) + MASS * along[n] * sum(along[n] - 2 * ARM * k
+                 for k in range(n + 1)) for n in range(10))  # fmt: skip
+    (first,) = [each for each in warnings if each.values["joint"] == joints[0]]
+    assert first.values["needed"] == pytest.approx(turned)
 
 
 def test_an_effort_limit_above_the_weight_holds_the_arm(held):

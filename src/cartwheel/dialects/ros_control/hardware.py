@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from functools import cache, partial
+from collections.abc import Mapping
+from functools import cached_property
 
 from cartwheel.codes import devices
 from cartwheel.component import Component
 from cartwheel.description.model import Joint, Mimic, RobotDescription
 from cartwheel.devices.joints.actuator import JointActuator, JointActuatorConfig
 from cartwheel.devices.joints.gravity import gravity_efforts
+from cartwheel.devices.joints.inertia import inertial_efforts
 from cartwheel.devices.joints.limits import JointLimits, position_range
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces
@@ -23,13 +24,36 @@ _TURNING, _SLIDING = 0.5, 0.05
 """Speed at which a joint overcomes its damping at least, rad/s and m/s."""
 
 
+class Needs:
+    """The efforts that the joints of a robot need, which are computed when they are needed.
+
+    Args:
+        description: The robot.
+        accelerates: Whether joints with commands accelerate what they move regardless of limits.
+    """
+
+    def __init__(self, description: RobotDescription, *, accelerates: bool) -> None:
+        self._description = description
+        self._accelerates = accelerates
+
+    @cached_property
+    def holding(self) -> Mapping[str, float]:
+        """The largest effort that gravity demands of each joint, N m or N."""
+        return gravity_efforts(self._description)
+
+    @cached_property
+    def accelerating(self) -> Mapping[str, float]:
+        """The effort with which each joint accelerates, N m or N; see `inertial_efforts`."""
+        return inertial_efforts(self._description) if self._accelerates else {}
+
+
 class JointHardware(JointActuator):
     """A joint that controllers can command.
 
     Args:
         owner: Plugin of the controller manager.
         interfaces: Interfaces of the joint.
-        needs: Returns the largest effort that gravity demands of each joint, N m or N.
+        needs: The efforts that the joints need.
         gains: An interface whose commands a PID converts to efforts, with the gains.
         limits: Parameters that override the limits in the description. If given, even empty, the
             soft limits in the description apply.
@@ -43,7 +67,7 @@ class JointHardware(JointActuator):
         self,
         owner: Component,
         interfaces: JointInterfaces,
-        needs: Callable[[], Mapping[str, float]],
+        needs: Needs,
         gains: tuple[str, PidGains] | None = None,
         limits: Settings | None = None,
         *,
@@ -116,7 +140,7 @@ def _strength(
     interfaces: JointInterfaces,
     joint: Joint,
     limit: float,
-    needs: Callable[[], Mapping[str, float]],
+    needs: Needs,
     *,
     command: str,
 ) -> float:
@@ -127,9 +151,13 @@ def _strength(
     if limit == math.inf:
         return limit
     resistance = _friction(owner.part.description, joint) + _drag(joint)
-    need = needs().get(joint.name, 0.0) + resistance
+    holding = needs.holding.get(joint.name, 0.0) + resistance
+    need = max(holding, needs.accelerating.get(joint.name, 0.0))
     if limit >= need:
         return limit
+    purpose = "hold the joint against gravity and to overcome its friction and damping"
+    if need > holding:
+        purpose = "accelerate what the joint moves"
     raises = owner.part.adds("raised-efforts")
     held, unit = 2 * need if raises else limit, "N" if joint.type == "prismatic" else "N m"
     result = (
@@ -140,8 +168,7 @@ def _strength(
     owner.warn(
         devices.EFFORT_LIMIT_TOO_LOW,
         f'the effort limit of joint "{joint.name}", {limit:g} {unit}, is below the '
-        f"{need:.3g} {unit} required to hold the joint against gravity and to overcome its "
-        f"friction and damping; {result}{held:.3g} {unit}",
+        f"{need:.3g} {unit} required to {purpose}; {result}{held:.3g} {unit}",
         at=interfaces.origin,
         values={"joint": joint.name, "stated": limit, "needed": need, "used": held},
     )
@@ -186,7 +213,8 @@ class Hardware:
     ) -> None:
         self._description = owner.part.description
         self._tags = "no <ros2_control>" if limits is None else "no <transmission>"
-        needs = cache(partial(gravity_efforts, self._description))
+        # Gazebo Classic sets the positions of joints. gz-sim has motors with the effort limit.
+        needs = Needs(self._description, accelerates=forced or limits is not None)
         self._joints = {
             each.name: JointHardware(
                 owner,
