@@ -179,6 +179,66 @@ def dragged_turn(robot: Robot) -> float | None:
     return None
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Braking:
+    """How wheels without motors brake a base."""
+
+    joints: tuple[Joint, ...]
+    """Those with damping or friction."""
+    traction: float
+    """Force with which the driven wheels push at most, N."""
+    speed: float
+    """Speed at which the wheels brake with this force, m/s; 0 if their friction exceeds it."""
+
+
+def braking(robot: Robot, driven: Sequence[Joint]) -> Braking | None:
+    """How the damping and friction of wheels that no motor turns brake a base.
+
+    Args:
+        robot: The robot.
+        driven: Joints of the driven wheels.
+
+    Returns:
+        None if no such wheel has damping or friction, or if the contacts are unknown.
+    """
+    wheels = {name for joint in driven for name in wheel_links(robot, joint)}
+    center = center_of_mass(robot.description, starting_poses(robot))
+    bottoms = [lowest(robot, *wheel_links(robot, joint)) for joint in driven]
+    known = [each for each in bottoms if each is not None]
+    if not driven or len(known) < len(bottoms) or not robot.placed.issuperset(wheels):
+        return None
+    passive = [
+        joint
+        for name in _touching(robot, min(known)) - wheels
+        if (joint := robot.inbound.get(name)) is not None
+        and joint.name not in robot.driven
+        and rolls_only_forward(robot, joint, driven)
+        and wheel_radius(robot, joint)
+    ]
+    braked = tuple(each for each in passive if each.axis.damping or each.axis.friction)
+    if center is None or not braked:
+        return None
+    axle = wheel_axis(robot, driven[0])
+    places = [wheel_tread(robot, joint) for joint in (*driven, *passive)]
+    x = np.array([_ahead(axle, each) for each in places])
+    y = np.array([float(axle @ each) for each in places])
+    loads = _loads(x, y, (_ahead(axle, center), float(axle @ center)))[: len(driven)]
+    weight = robot.description.mass * _GRAVITY
+    # Without a direction, the coefficients are those along the axes of the world.
+    grips = [min(_coefficients(robot, joint.child)) for joint in driven]
+    traction = weight * sum(load * mu for load, mu in zip(loads, grips, strict=True))
+    radii = [wheel_radius(robot, joint) or 1.0 for joint in braked]
+    least = sum(each.axis.friction / r for each, r in zip(braked, radii, strict=True))
+    rate = sum(each.axis.damping / r**2 for each, r in zip(braked, radii, strict=True))
+    spare = traction - least
+    speed = 0.0 if spare <= 0 else float(spare / rate) if rate else float("inf")
+    return Braking(
+        joints=tuple(sorted(braked, key=lambda each: each.name)),
+        traction=float(traction),
+        speed=speed,
+    )
+
+
 def is_held(robot: Robot, driven: Sequence[Joint]) -> bool:
     """Whether the friction of parts that slide exceeds the force of all motors together.
 
@@ -262,13 +322,20 @@ def _ahead(axle: Floats, place: Sequence[float] | Floats) -> float:
 
 def _friction(robot: Robot, link: str) -> tuple[float, float]:
     """Coefficients along and across the direction of a link's first collision, at most 1."""
-    for collision in robot.links[link].collisions:
+    first, second = _coefficients(robot, link)
+    collisions = robot.links[link].collisions
+    if collisions and collisions[0].surface.fdir1_frame is None:
+        # The axes turn with the wheel, or are those of the world.
+        first = second = max(first, second)
+    return first, second
+
+
+def _coefficients(robot: Robot, link: str) -> tuple[float, float]:
+    """Both coefficients of a link's first collision, at most 1."""
+    for collision in robot.links[link].collisions[:1]:
         surface = collision.surface
         first = 1.0 if surface.mu1 is None else surface.mu1
         second = first if surface.mu2 is None else surface.mu2
-        if surface.fdir1_frame is None:
-            # The axes turn with the wheel, or are those of the world.
-            first = second = max(first, second)
         return min(first, 1.0), min(second, 1.0)
     return 1.0, 1.0
 

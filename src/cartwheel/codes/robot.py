@@ -228,3 +228,9 @@ WHEEL_SPEED_LIMITED = Code(
 BASE_FIXED = Code(
     "CW254", "base-fixed", "warning", "a robot that wheels should drive is fixed to the world"
 )
+WHEELS_BRAKED = Code(
+    "CW255",
+    "wheels-braked",
+    "warning",
+    "wheels without motors brake a robot more than its driven wheels can push it",
+)

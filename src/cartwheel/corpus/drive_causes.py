@@ -127,7 +127,7 @@ def _cause(
     if toed is not None:
         return toed
     if 0.0 < ratio < 1.0:
-        codes |= {robot.PLANAR_FRICTION}
+        codes |= {robot.PLANAR_FRICTION, robot.WHEELS_BRAKED}
         if turning and skids is None:
             # Wheels that slide by an unknown amount.
             codes |= {robot.SKID_STEERING}

@@ -58,6 +58,7 @@ from cartwheel.checks.rules.wheels import (
     wheel_shapes,
     wheel_sides,
     wheel_speed,
+    wheels_braked,
     wheels_off_ground,
 )
 
@@ -80,6 +81,7 @@ RULES: tuple[Rule, ...] = tuple(
         fixed_base,
         wheel_sides,
         wheel_speed,
+        wheels_braked,
         wheel_axes,
         wheel_shapes,
         wheel_separation,
