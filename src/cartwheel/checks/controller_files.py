@@ -11,8 +11,10 @@ from typing import Any
 from cartwheel import yaml_text
 from cartwheel.checks import nodes
 from cartwheel.codes import devices as devices_codes
-from cartwheel.description.model import Element
-from cartwheel.errors import Diagnostic, Origin
+from cartwheel.description.model import Element, RobotDescription
+from cartwheel.dialects.ros_control.files import read_parameters
+from cartwheel.dialects.ros_control.launch_arguments import launch_arguments, with_arguments
+from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _MAX_BYTES = 1_000_000
 _ROS2 = "ros__parameters"
@@ -112,6 +114,8 @@ class ControlFile:
     """Whether the robot or the user refers to the file; otherwise it was found near the robot."""
     element: Element | None = None
     """The tag that refers to the file."""
+    robot: RobotDescription | None = None
+    """The robot whose arguments replace ``$(arg name)`` in the file."""
 
     @cached_property
     def lines(self) -> list[str]:
@@ -167,7 +171,8 @@ class ControlFile:
         import yaml
 
         try:
-            return yaml.compose(_start_of(self.path), Loader=yaml_text.loader())
+            text = _start_of(self.path)
+            root = yaml.compose(text, Loader=yaml_text.loader())
         except (OSError, yaml.YAMLError) as error:
             mark = getattr(error, "problem_mark", None)
             problem = getattr(error, "problem", None) or getattr(error, "strerror", None) or error
@@ -176,6 +181,18 @@ class ControlFile:
                 values={"problem": str(problem)},
                 origin=Origin(file=str(self.path), line=mark.line + 1 if mark is not None else 0),
             )
+        if self.robot is not None and "$(" in text:
+            self._fill(root, self.robot)
+        return root
+
+    def _fill(self, root: Any, robot: RobotDescription) -> None:
+        """Replaces the arguments in the file, as when the controllers are loaded."""
+        try:
+            arguments = launch_arguments(read_parameters(self.path), robot)
+        except PluginError:
+            arguments = dict(robot.arguments)
+        for node in _scalars(root):
+            node.value = with_arguments(node.value, arguments)
 
     def _of_ros1(self, node: Any, path: tuple[str, ...]) -> Iterator[Controller]:
         for key, value in pairs(node):
@@ -220,6 +237,23 @@ class ControlFile:
                 parameters=(*parameters.get("**", ()), *parameters.get(name, ())),
                 file=self,
             )
+
+
+def _scalars(root: Any) -> Iterator[Any]:
+    """All scalars in a tree, each once: aliases lead to the same node several times."""
+    seen: set[int] = set()
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if node.id == "scalar":
+            yield node
+        elif node.id == "sequence":
+            waiting += node.value
+        else:
+            waiting += (part for pair in node.value for part in pair)
 
 
 def pairs(node: Any) -> list[tuple[Any, Any]]:

@@ -39,15 +39,21 @@ def controller_files_of(
     found: list[tuple[Robot, ControlFile]] = []
     problems: list[Diagnostic] = []
     for robot in robots:
-        found += [(robot, ControlFile(path=_plain(path), named=True)) for path in given]
+        described = robot.description
+        found += [
+            (robot, ControlFile(path=_plain(path), named=True, robot=described)) for path in given
+        ]
         for element in named_files(robot):
             path = resolved(packages, element)
             if isinstance(path, Path):
-                found.append((robot, ControlFile(path=path, named=True, element=element)))
+                file = ControlFile(path=path, named=True, element=element, robot=described)
+                found.append((robot, file))
         if not given:
             launched = _launched(robot, packages.package_path)
             near = dict.fromkeys((*_near(robot), *map(_plain, launched.files)))
-            found += [(robot, ControlFile(path=path, named=False)) for path in near]
+            found += [
+                (robot, ControlFile(path=path, named=False, robot=described)) for path in near
+            ]
             problems += launched.problems
     return found, problems
 

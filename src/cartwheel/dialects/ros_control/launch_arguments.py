@@ -38,6 +38,11 @@ def launch_arguments(content: Any, robot: RobotDescription) -> dict[str, str]:
     return {**empty, **shortest, **robot.arguments}
 
 
+def with_arguments(text: str, arguments: Mapping[str, str]) -> str:
+    """A text in which known arguments are replaced by their values."""
+    return _ARGUMENT.sub(lambda match: arguments.get(match[1], match[0]), text)
+
+
 def _of_frames(content: Any) -> set[str]:
     """Names of arguments that only precede the names of frames, in values of keys with `frame`."""
     frames, others = set[str](), set[str]()
