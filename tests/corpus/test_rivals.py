@@ -6,6 +6,8 @@ from tests.corpus.carts import cart, controlled, plugin, written
 from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED, WHEEL_SEPARATION_MISMATCH
 from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 from cartwheel.corpus import try_robot
+from cartwheel.corpus.rivals import _variants
+from cartwheel.description import load_robot
 
 TRANSMISSION = (
     '<transmission name="{name}"><type>transmission_interface/SimpleTransmission</type>'
@@ -65,3 +67,21 @@ def test_a_wrong_size_explains_the_turn_rate_of_two_drives_before_their_number(t
     verdict = try_robot(written(tmp_path, cart(), plugin(), again), standing=1.0)
     assert JOINT_DRIVEN_TWICE in {each.code for each in verdict.diagnostics}
     assert reasons(verdict) == {"turn": WHEEL_SEPARATION_MISMATCH}
+
+
+def test_transmissions_that_hold_the_wheels_are_tested_without_their_manager(tmp_path):
+    """The manager also runs a controller, without which the drive may not steer."""
+    arm = (
+        '<link name="arm"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/>'
+        '</inertial></link><joint name="arm_joint" type="revolute"><parent link="base"/>'
+        '<child link="arm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="5" '
+        'velocity="5"/></joint>' + TRANSMISSION.format(name="arm", kind="Position")
+    )
+    robot = load_robot(written(tmp_path, cart(), plugin(), managed("Velocity"), arm))
+    whole = len(robot.plugins), len(robot.transmissions)
+    counts = [
+        (len(each.plugins), len(each.transmissions))
+        for each in _variants(robot, {"left_joint", "right_joint"})
+    ]
+    assert whole == (2, 3)
+    assert counts == [(1, 3), (1, 3), (2, 1)]

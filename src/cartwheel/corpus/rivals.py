@@ -14,13 +14,13 @@ from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 from cartwheel.corpus.faults import Test
 from cartwheel.corpus.movers import managers, reports
 from cartwheel.corpus.verdict import Verdict
-from cartwheel.description.model import PluginTag, RobotDescription
+from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import CartwheelError
 
 _MOST = 4
 """Maximum number of plugins that are tested alone."""
-_CHANGE = 0.5
+_CHANGE = 0.25
 """Smallest change of an error without the other plugin, relative to the error."""
 
 
@@ -42,12 +42,10 @@ def hindered(
     failed = {each: error for each, error, passed in _errors(verdict) if not passed}
     if not contested or not failed:
         return frozenset()
-    drivers = [tag for tag in robot.plugins if _drives(tag, robot, contested)]
     found: set[tuple[Test, str]] = set()
-    for alone in drivers[:_MOST] if len(drivers) > 1 else ():
-        plugins = [tag for tag in robot.plugins if tag is alone or tag not in drivers]
+    for variant in _variants(robot, contested):
         try:
-            other = again(replace(robot, plugins=tuple(plugins)))
+            other = again(variant)
         except CartwheelError:
             continue
         errors = {each: error for each, error, _ in _errors(other)}
@@ -57,6 +55,27 @@ def hindered(
             if each in errors and abs(errors[each] - error) >= _CHANGE * abs(error)
         }
     return frozenset(found)
+
+
+def _variants(robot: RobotDescription, joints: set[str]) -> Iterator[RobotDescription]:
+    """The robot with one of the plugins that drive these joints, and without their transmissions.
+
+    A drive may steer by controllers of other joints.
+    """
+    drivers = [tag for tag in robot.plugins if _drives(tag, robot, joints)]
+    if len(drivers) < 2:
+        return
+    for alone in drivers[:_MOST]:
+        plugins = [tag for tag in robot.plugins if tag is alone or tag not in drivers]
+        yield replace(robot, plugins=tuple(plugins))
+    transmissions = [each for each in robot.transmissions if joints.isdisjoint(_listed(each))]
+    if 0 < len(transmissions) < len(robot.transmissions):
+        yield replace(robot, transmissions=tuple(transmissions))
+
+
+def _listed(element: Element) -> list[str]:
+    """The joints that a transmission lists."""
+    return [(each.attribute("name") or "").strip() for each in element.find_all("joint")]
 
 
 def _drives(tag: PluginTag, robot: RobotDescription, joints: set[str]) -> bool:
