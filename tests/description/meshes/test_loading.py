@@ -287,7 +287,7 @@ UNUSABLE = [
     ("a.stl", binary_stl([[(0, 0, 0), (1, 0, 0), (0, float("nan"), 0)]]), "not finite"),
     ("a.obj", "v 0 0 0\nv 1 0\nf 1 2 3\n", '"v" statement'),
     ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "the index 2"),
-    ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n", "an invalid index"),
+    ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n", "is not an OBJ index"),
     ("a.obj", "nothing of use", "no triangles"),
     ("a.fbx", b"Kaydara", 'format "fbx" is not supported'),
     ("a.glb", b"glTF but no more", "."),

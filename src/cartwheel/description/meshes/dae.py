@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from cartwheel.description.meshes.corners import weld
 from cartwheel.description.meshes.dae_material import Library, MaterialLook, read_look
+from cartwheel.description.meshes.number_text import floats_of, integers_of
 from cartwheel.description.meshes.submesh import MOST_TRIANGLES, Submesh
 
 Array = NDArray[np.float64]
@@ -244,7 +245,7 @@ class _Scene:
         array = source.find("float_array")
         if array is None:
             raise ValueError(f'the COLLADA <source> "{url}" has no <float_array>')
-        values = np.array((array.text or "").split(), dtype=np.float64)
+        values = floats_of(array.text or "")
         accessor = source.find("technique_common/accessor")
         stride = int(accessor.get("stride", "1")) if accessor is not None else width
         start = int(accessor.get("offset", "0")) if accessor is not None else 0
@@ -270,7 +271,7 @@ class _Primitive:
 def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Corners of each polygon, and indices of shape (corners, stride)."""
     lists = [p for p in element.iter("p") if p.text and p.text.strip()]
-    rows = [np.array((p.text or "").split(), dtype=np.int64) for p in lists]
+    rows = [integers_of(p.text or "") for p in lists]
     for row in rows:
         if len(row) % stride:
             raise ValueError(f"the index list of a COLLADA <{element.tag}> is truncated")
@@ -283,7 +284,7 @@ def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDAr
         counts = np.array([len(row) // stride for row in rows], dtype=np.int64)
     elif element.tag == "polylist":
         vcount = element.find("vcount")
-        counts = np.array((vcount.text or "").split() if vcount is not None else [], dtype=np.int64)
+        counts = integers_of((vcount.text or "") if vcount is not None else "")
     else:
         if len(indices) % 3:
             raise ValueError(f"the index list of a COLLADA <{element.tag}> is truncated")
@@ -311,7 +312,7 @@ def _bindings(instance: ET.Element) -> dict[str, str]:
 
 
 def _floats(element: ET.Element, count: int) -> Array:
-    values = np.array((element.text or "").split(), dtype=np.float64)
+    values = floats_of(element.text or "")
     if len(values) != count or not np.isfinite(values).all():
         raise ValueError(f"a COLLADA <{element.tag}> must contain {count} finite numbers")
     return values

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,9 +13,14 @@ from numpy.typing import NDArray
 
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.meshes.corners import weld
+from cartwheel.description.meshes.number_text import floats_of, integers_of
 from cartwheel.description.meshes.submesh import Submesh
 from cartwheel.description.model import Rgba
 
+_LINES = re.compile(rb"(?P<key>v[tn]?|f) [^\n]*+\n(?:(?P=key) [^\n]*+\n)*+|[^\n]*+\n")
+"""A line, or several lines with the same key."""
+_KEYS = b"vtn"
+_TO_SPACES = bytes.maketrans(b"f/", b"  ")
 _IGNORED = frozenset({"s", "g", "l", "p", "vp", "#", "mg"})
 
 
@@ -24,11 +32,24 @@ class _Material:
 
 @dataclass(slots=True)
 class _Group:
-    """Faces with the same object and material, as lines with absolute indices."""
+    """Faces with the same object and material, as one or several lines with absolute indices."""
 
     name: str
     material: str
     faces: list[bytes] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Table:
+    """The statements of one kind."""
+
+    lines: list[bytes] = field(default_factory=list)
+    """Each is one or several lines."""
+    count: int = 0
+
+    def add(self, lines: bytes) -> None:
+        self.lines.append(lines)
+        self.count += lines.count(b"\n")
 
 
 def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
@@ -42,17 +63,21 @@ def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     Raises:
         ValueError: What is wrong with the file.
     """
-    tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
+    tables = {key: _Table() for key in (b"v", b"vt", b"vn")}
     groups: dict[tuple[str, str], _Group] = {}
     libraries: list[str] = []
     name, material = "", ""
-    for line in data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").split(b"\n"):
-        key, _, rest = line.strip().partition(b" ")
+    whole = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ") + b"\n"
+    for found in _LINES.finditer(whole):
+        lines = found[0]
+        key, _, rest = lines.strip().partition(b" ")
+        if found["key"] is None and (key in tables or key == b"f"):
+            lines = key + b" " + rest + b"\n"  # without spaces before the key
         if key in tables:
-            tables[key].append(rest)
+            tables[key].add(lines)
         elif key == b"f":
             group = groups.setdefault((name, material), _Group(name, material))
-            group.faces.append(_absolute(rest, tables) if b"-" in rest else rest)
+            group.faces.append(_absolute(lines, tables) if b"-" in lines else lines)
         elif key == b"o":
             name = rest.strip().decode(errors="replace")
         elif key == b"usemtl":
@@ -69,7 +94,7 @@ def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     materials = _materials(path, libraries, notes)
     result: list[Submesh] = []
     for group in groups.values():
-        counts, corners = _corners(group.faces)
+        counts, corners = _corners(b"".join(group.faces))
         look = materials.get(group.material, _Material())
         has_uv = bool(len(uv)) and bool((corners[:, 1] >= 0).all())
         has_normals = bool(len(normals)) and bool((corners[:, 2] >= 0).all())
@@ -87,27 +112,40 @@ def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     return result
 
 
-def _table(rows: list[bytes], width: int, key: str) -> NDArray[np.float64]:
+def _table(table: _Table, width: int, key: str) -> NDArray[np.float64]:
     """The numbers in all statements of one kind, without additional colours or weights."""
-    if not rows:
+    if not table.count:
         return np.zeros((0, width))
-    words = b" ".join(rows).split()
+    text = b"".join(table.lines)
+    first, _, _ = text.partition(b"\n")
+    # Letters of the keys within numbers are errors.
+    letters = sum(map(text.count, (b"v", b"t", b"n")))
+    if len(first.split()) == width + 1 and letters == len(key) * table.count:
+        with contextlib.suppress(ValueError):
+            values = floats_of(text.translate(None, _KEYS))
+            if len(values) == width * table.count:
+                return values.reshape(-1, width)
     try:
-        if len(words) == width * len(rows) and len(rows[0].split()) == width:
-            return np.array(words, dtype="S").astype(np.float64).reshape(-1, width)
-        return np.array([[float(w) for w in row.split()[:width]] for row in rows], dtype=np.float64)
+        rows = (line.split()[1 : width + 1] for line in text.split(b"\n")[:-1])
+        return np.array([[float(word) for word in row] for row in rows], dtype=np.float64)
     except ValueError:
         raise ValueError(f'an OBJ "{key}" statement must contain {width} numbers') from None
 
 
-def _absolute(face: bytes, tables: dict[bytes, list[bytes]]) -> bytes:
-    """Converts negative indices, which count back from the last statement."""
+def _absolute(lines: bytes, tables: Mapping[bytes, _Table]) -> bytes:
+    """Converts negative indices of faces, which count back from the last statement."""
+    return b"".join(
+        b"f " + _absolute_face(line[2:], tables) + b"\n" for line in lines.split(b"\n")[:-1]
+    )
+
+
+def _absolute_face(face: bytes, tables: Mapping[bytes, _Table]) -> bytes:
     words = []
     for word in face.split():
         parts = word.split(b"/")
         for i, key in enumerate((b"v", b"vt", b"vn")[: len(parts)]):
             if parts[i].startswith(b"-"):
-                parts[i] = str(len(tables[key]) + 1 + _index(parts[i])).encode()
+                parts[i] = str(tables[key].count + 1 + _index(parts[i])).encode()
         words.append(b"/".join(parts))
     return b" ".join(words)
 
@@ -119,29 +157,47 @@ def _index(word: bytes) -> int:
         raise ValueError(f'"{word[:20].decode(errors="replace")}" is not an OBJ index') from None
 
 
-def _corners(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _corners(text: bytes) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Corners of each face, and indices of v, vt and vn, shape (corners, 3); -1 if missing."""
-    split = [face.split() for face in faces]
+    return _uniform_corners(text) or _any_corners(text)
+
+
+def _uniform_corners(text: bytes) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
+    """The corners of faces that all state the same kinds of indices; None for others."""
+    characters = np.frombuffer(text, dtype=np.uint8)
+    inside = characters > ord(" ")
+    starts = np.flatnonzero(inside & ~np.concatenate([[False], inside[:-1]]))
+    lines = np.searchsorted(np.flatnonzero(characters == ord("\n")), starts)
+    counts = np.bincount(lines) - 1  # without the key
+    corners = starts[characters[starts] != ord("f")]
+    slashes = np.searchsorted(corners, np.flatnonzero(characters == ord("/")), side="right") - 1
+    per_corner = np.bincount(slashes[slashes >= 0], minlength=len(corners))
+    if text.count(b"f") != len(counts) or not len(corners):
+        return None
+    if (per_corner != per_corner[0]).any() or per_corner[0] > 2:
+        return None
+    width = int(per_corner[0]) + 1
+    try:
+        plain = text.replace(b"//", b"/0/") if width == 3 else text
+        numbers = integers_of(plain.translate(_TO_SPACES))
+    except ValueError:
+        return None
+    if len(numbers) != width * len(corners) or len(corners) != counts.sum():
+        return None
+    indices = np.full((len(corners), 3), -1, dtype=np.int64)
+    indices[:, :width] = numbers.reshape(-1, width) - 1
+    return counts.astype(np.int64), indices
+
+
+def _any_corners(text: bytes) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    split = [line.split()[1:] for line in text.split(b"\n")[:-1]]
     counts = np.array([len(words) for words in split], dtype=np.int64)
     words = [word for row in split for word in row]
-    slashes = {word.count(b"/") for word in words}
     corners = np.full((len(words), 3), -1, dtype=np.int64)
-    if not words:
-        return counts, corners
-    if len(slashes) == 1 and (width := slashes.pop() + 1) <= 3:
-        flat = b"/".join(words)
-        if width == 3:
-            flat = flat.replace(b"//", b"/0/")
-        try:
-            numbers = np.array(flat.split(b"/"), dtype="S").astype(np.int64)
-        except ValueError:
-            raise ValueError("an OBJ face (f) contains an invalid index") from None
-        corners[:, :width] = numbers.reshape(-1, width) - 1
-    else:
-        for row, word in enumerate(words):
-            for column, part in enumerate(word.split(b"/")[:3]):
-                if part:
-                    corners[row, column] = _index(part) - 1
+    for row, word in enumerate(words):
+        for column, part in enumerate(word.split(b"/")[:3]):
+            if part:
+                corners[row, column] = _index(part) - 1
     return counts, corners
 
 

@@ -24,7 +24,8 @@ def triangulate(counts: Sequence[int] | Indices, positions: NDArray[Any]) -> Ind
         Corner indices, shape (m, 3).
     """
     sizes = np.asarray(counts, dtype=np.int64).reshape(-1)
-    if (sizes < 0).any() or int(sizes.sum()) != len(positions):
+    # A single size first: the sum of several could exceed the largest integer.
+    if ((sizes < 0) | (sizes > len(positions))).any() or int(sizes.sum()) != len(positions):
         raise ValueError(
             f"the polygons have {int(sizes.sum())} vertices, but the index list has "
             f"{len(positions)} entries"
