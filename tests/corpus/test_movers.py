@@ -2,6 +2,7 @@
 
 import pytest
 from tests.corpus.carts import cart, plugin, written
+from tests.corpus.test_rivals import MANAGER, managed
 
 from cartwheel.codes.devices import PLUGIN_UNKNOWN
 from cartwheel.corpus import try_robot
@@ -27,6 +28,27 @@ def test_an_unsupported_plugin_of_a_robot_that_a_drive_moves_is_no_fault(tmp_pat
 def test_a_plugin_named_after_following_moves_a_model_whose_wheels_do_not_turn(tmp_path):
     box = cart().replace('type="continuous"', 'type="fixed"')
     verdict = try_robot(written(tmp_path, box, OTHER.format("libmy_follower.so")), standing=1.0)
+    assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
+
+
+def test_unsupported_hardware_may_be_what_moves_an_arm(tmp_path):
+    """Its transmissions are for controllers, but nothing that is supported runs them."""
+    box = cart().replace('type="continuous"', 'type="revolute"')
+    arm = managed("Effort").replace(MANAGER, OTHER.format("libmy_hw_gazebo_plugin.so"))
+    verdict = try_robot(written(tmp_path, box, arm), standing=1.0)
+    assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
+    assert verdict.outcome == "unknown"
+
+
+def test_controllers_that_are_only_loaded_are_not_why_unsupported_hardware_does_not_move(tmp_path):
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>")
+    (tmp_path / "robot.launch").write_text(
+        '<launch><param name="robot_description" textfile="$(find robot)/robot.urdf"/>'
+        '<node name="s" pkg="controller_manager" type="spawner" args="--stopped move"/></launch>'
+    )
+    box = cart().replace('type="continuous"', 'type="revolute"')
+    arm = managed("Effort").replace(MANAGER, OTHER.format("libmy_hw_gazebo_plugin.so"))
+    verdict = try_robot(written(tmp_path, box, arm), standing=1.0)
     assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
 
 

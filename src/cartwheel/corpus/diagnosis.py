@@ -158,7 +158,11 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
     moves = any(joint.type != "fixed" for joint in description.joints)
     stopped = replaced if verdict.controller_files or not moves else []
     causes = (devices.CONTROLLER_UNDEFINED, devices.CONTROLLER_ONLY_LOADED)
-    undefined = [each for each in verdict.observed if each.code in causes]
+    undefined = [
+        each
+        for each in verdict.observed
+        if each.code in causes and managers(description, jointless=True)
+    ]
     for each in undefined:
         yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
     for tag in managers(description, jointless=bool(replaced)):

@@ -43,10 +43,10 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
 
     An unsupported plugin also counts if its tags contain the name of a movable joint, if a tag is
     named after gains, forces, motors or velocity commands, or if nothing else moves a robot with
-    wheels, unless its own name says that it only measures.
+    wheels or with joints for controllers, unless its own name says that it only measures.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
-    waits = _has_wheels(robot) and not any(
+    waits = _should_move(robot) and not any(
         is_known(tag) and is_mover(tag.filename) for tag in robot.plugins
     )
     return [
@@ -85,9 +85,10 @@ def _may_move(tag: PluginTag) -> bool:
     return not is_known(tag) and not reports(name) and name not in WITHOUT_EFFECT
 
 
-def _has_wheels(robot: RobotDescription) -> bool:
-    """Whether several joints turn without limits."""
-    return sum(joint.turns for joint in robot.joints) > 1
+def _should_move(robot: RobotDescription) -> bool:
+    """Whether several joints turn without limits, or the description lists joints to command."""
+    listed = any(True for each in robot.transmissions for _ in each.find_all("joint"))
+    return listed or bool(robot.ros2_control) or sum(joint.turns for joint in robot.joints) > 1
 
 
 def reports(name: str) -> bool:
