@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from cartwheel.codes.command import NO_ROBOTS
 
 BOX = """<robot name="box"><link name="box">
@@ -102,3 +104,20 @@ def test_the_arguments_of_a_launch_file_are_printed_with_a_fault(program, tmp_pa
     done = program("corpus", tmp_path, "--for", "1", status=1)
     (line,) = [each for each in done.stdout.splitlines() if "sim:=1" in each]
     assert "cart.launch" in line
+
+
+@pytest.mark.parametrize("sideways", [True, False])
+def test_the_column_for_sideways_motion_is_printed_if_a_robot_can_move_so(
+    program, tmp_path, sideways
+):
+    plugin = "gz-sim-velocity-control-system" if sideways else "gz-sim-pose-publisher-system"
+    (tmp_path / "box.sdf").write_text(
+        '<sdf version="1.9"><model name="box"><link name="l"><collision name="c"><geometry><box>'
+        "<size>0.2 0.2 0.2</size></box></geometry></collision></link>"
+        f'<plugin name="p" filename="{plugin}"/></model></sdf>'
+    )
+    done = program("corpus", tmp_path, "--for", "1", status=None)
+    head, row = (each.split() for each in done.stdout.splitlines()[:2])
+    assert ("sideways" in head) == sideways
+    if sideways:
+        assert row[head.index("sideways")].endswith("%")
