@@ -393,3 +393,25 @@ def test_a_world_saved_with_turned_joints_begins_and_begins_again_with_them():
             world.run(0.5)
             assert simulation.engine.link_pose("m", "bob").position[2] > 2.1
             world.reset()
+
+
+ROOT_LAST = """<model name="sled"><pose>0 0 1 0 0 0</pose>
+  <link name="mast"><pose>0 0 0.5 0 0 0</pose></link>
+  <link name="body"><collision name="c"><geometry><box><size>1 1 0.2</size></box></geometry>
+  </collision></link>
+  <joint name="step" type="{kind}"><parent>{parent}</parent><child>{child}</child></joint></model>"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "parent", "child"),
+    [("fixed", "body", "mast"), ("ball", "body", "mast"), ("fixed", "mast", "body")],
+)
+def test_a_model_moves_whichever_of_its_links_is_the_root(make, kind, parent, child):
+    """The root of the joints need not be the first link."""
+    world = make.world()
+    model = world.spawn(make.sdf(ROOT_LAST.format(kind=kind, parent=parent, child=child)))
+    assert world.session.simulation.moves(model.name)
+    start = model.pose.x
+    world.session.simulation.truth.set_velocity(model.name, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    world.run(0.1)
+    assert model.pose.x - start == pytest.approx(0.1, rel=0.05)

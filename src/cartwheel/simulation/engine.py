@@ -268,6 +268,16 @@ class Engine(Computed):
         free = joint >= 0 and self.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_FREE
         return joint if free else -1
 
+    def is_free(self, model: str, link: str) -> bool:
+        """Whether a link moves with a free joint, which may be that of a link to which it is fixed
+        or jointed: the first link of an SDF model need not be the root of its joints.
+        """
+        body = self.body_id(model, link)
+        if body < 0:
+            return False
+        joint = self.model.body_jntadr[self.model.body_rootid[body]]
+        return bool(joint >= 0 and self.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_FREE)
+
     def place(self, joint: int, pose: Pose, linear: Vec3 = _STILL, angular: Vec3 = _STILL) -> None:
         """Moves the body of a free joint and sets its frame's velocity.
 

@@ -142,7 +142,7 @@ class GroundTruth:
         """
         entry = self._population.resident(model).entry
         numbers((*linear, *angular), f'the velocity of model "{model}"')
-        if self._engine.free_joint(model, entry.description.canonical_link) < 0:
+        if not self._engine.is_free(model, entry.description.canonical_link):
             motions = self._population.motions
             if not motions.can_move(entry):
                 error = _fixed(model)

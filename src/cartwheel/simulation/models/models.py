@@ -138,7 +138,7 @@ class Models(Run):
             UnknownNameError: The model does not exist.
         """
         link = self._population.resident(name).entry.description.canonical_link
-        return self.engine.free_joint(name, link) >= 0
+        return self.engine.is_free(name, link)
 
     def namespace(self, name: str) -> str:
         """The namespace of a model's topics and services; empty for the root.
