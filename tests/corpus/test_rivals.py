@@ -38,6 +38,16 @@ def test_hardware_that_holds_the_wheels_of_a_drive_is_why_it_is_slow(tmp_path, s
     assert verdict.outcome == "file"
 
 
+def test_hardware_that_holds_the_wheels_is_the_reason_although_their_size_is_wrong_too(tmp_path):
+    """Without the hardware, the base drives at a tenth of the commanded speed."""
+    path = written(tmp_path, cart(), plugin(), managed("Velocity"))
+    size = "<wheelDiameter>0.1</wheelDiameter>"
+    assert size in path.read_text()
+    path.write_text(path.read_text().replace(size, "<wheelDiameter>1.0</wheelDiameter>"))
+    verdict = try_robot(path, standing=1.0)
+    assert reasons(verdict) == {"drive": JOINT_DRIVEN_TWICE, "turn": JOINT_DRIVEN_TWICE}
+
+
 def test_hardware_without_controllers_does_not_hide_another_reason(tmp_path):
     reversed_wheel = cart().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>', 1)
     path = written(tmp_path, reversed_wheel, plugin(), managed("Velocity"))

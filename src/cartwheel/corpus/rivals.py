@@ -22,6 +22,11 @@ _MOST = 4
 """Maximum number of plugins that are tested alone."""
 _CHANGE = 0.25
 """Smallest change of an error without the other plugin, relative to the error."""
+_STIRS = 0.05
+"""Smallest change of a base's speed that counts if the speed at least doubles, relative to the
+command."""
+_BASES = frozenset[Test]({"drive", "turn", "sideways"})
+"""Tests whose errors are relative to the command."""
 
 
 def hindered(
@@ -52,7 +57,7 @@ def hindered(
         found |= {
             each
             for each, error in failed.items()
-            if each in errors and abs(errors[each] - error) >= _CHANGE * abs(error)
+            if each in errors and _changes(each[0], errors[each], error)
         }
     return frozenset(found)
 
@@ -76,6 +81,18 @@ def _variants(robot: RobotDescription, joints: set[str]) -> Iterator[RobotDescri
 def _listed(element: Element) -> list[str]:
     """The joints that a transmission lists."""
     return [(each.attribute("name") or "").strip() for each in element.find_all("joint")]
+
+
+def _changes(test: Test, alone: float, both: float) -> bool:
+    """Whether the error of a failed test is another one without the other plugin.
+
+    A base that stands still because of the other plugin may also have a mistake of its own, such as
+    a wrong radius, with which it hardly moves.
+    """
+    change = abs(alone - both)
+    if change >= _CHANGE * abs(both):
+        return True
+    return test in _BASES and change >= _STIRS and abs(1.0 + alone) >= 2.0 * abs(1.0 + both)
 
 
 def _drives(tag: PluginTag, robot: RobotDescription, joints: set[str]) -> bool:
