@@ -52,3 +52,12 @@ def test_a_base_without_wheels_is_commanded_sideways(tmp_path):
     (drive,) = try_robot(written(tmp_path, box, PLANAR), standing=1.0).drives
     assert drive.commanded_sideways == 0.2
     assert drive.slides
+
+
+def test_wheels_that_roll_sideways_do_not_turn_the_frame_of_a_pushed_base(tmp_path):
+    """Axles along x: the wheels roll when the base is pushed along y."""
+    turned = cart().replace('rpy="-1.5708 0 0"', 'rpy="0 1.5708 0"')
+    assert turned != cart()
+    (drive,) = try_robot(written(tmp_path, turned, PLANAR), standing=1.0).drives
+    assert drive.measured_sideways == pytest.approx(0.2, rel=0.05)
+    assert drive.slides

@@ -142,8 +142,11 @@ def _takes_sideways(
     model: Model, robot: Robot, topic: TopicInfo, drive: DriveDevice | WheelController | None
 ) -> bool:
     """Whether ``linear.y`` of the commands on a topic is followed."""
-    if drive is not None:
-        return drive.sideways
+    return drive.sideways if drive is not None else _is_pushed(model, robot, topic)
+
+
+def _is_pushed(model: Model, robot: Robot, topic: TopicInfo) -> bool:
+    """Whether a plugin moves the whole model as commanded on a topic."""
     nodes = {
         f"{model.name}/{tag.name}"
         for tag in robot.description.plugins
@@ -199,7 +202,9 @@ def _measured(
         name: (end - joints[name]) / _MEASURED for name, end in positions(world, model).items()
     }
     # The pose is that of the root link, whose frame may be turned in the model's frame.
-    facing = (1.0, 0.0) if flying else heading(robot, speeds)
+    # Commands to plugins that move the whole model are in this frame, however its wheels turn.
+    free = flying or _is_pushed(model, robot, topic)
+    facing = (1.0, 0.0) if free else heading(robot, speeds)
     ahead = rotate(robot.description.canonical_pose.inverse().orientation, (*facing, 0))
     x, y, _ = rotate(before.orientation, ahead)
     length = math.hypot(x, y) or 1.0
