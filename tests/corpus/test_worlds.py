@@ -40,13 +40,16 @@ def test_models_that_plugins_move_are_found(tmp_path):
         cart("parked", static=True),
         CRATE.format("gz-sim-pose-publisher-system"),
         CRATE.format("libgazebo_ros_control.so").replace("crate", "arm"),
+        cart("own", file="libOwnSystem.so"),
+        cart("measured", file="libJointStatePublisher.so"),
         "<include><uri>model://cart</uri></include>",
         name="worlds/yard.world",
     )
     found = survey(tmp_path)
     file = tmp_path / "worlds" / "yard.world"
     assert found.robots == ()
-    assert found.in_worlds == ((file, "first"), (file, "arm"))
+    # An unsupported plugin that names joints, and does not only publish, moves them.
+    assert found.in_worlds == ((file, "first"), (file, "arm"), (file, "own"))
     assert survey(file).in_worlds == found.in_worlds
 
 

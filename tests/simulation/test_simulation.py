@@ -399,7 +399,8 @@ ROOT_LAST = """<model name="sled"><pose>0 0 1 0 0 0</pose>
   <link name="mast"><pose>0 0 0.5 0 0 0</pose></link>
   <link name="body"><collision name="c"><geometry><box><size>1 1 0.2</size></box></geometry>
   </collision></link>
-  <joint name="step" type="{kind}"><parent>{parent}</parent><child>{child}</child></joint></model>"""
+  <joint name="step" type="{kind}"><parent>{parent}</parent><child>{child}</child></joint>
+</model>"""
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Set
 
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import Element, PluginTag, RobotDescription
@@ -65,6 +66,13 @@ def is_mover(filename: str) -> bool:
     """Whether a plugin moves a robot or its joints, or runs controllers, by its name alone."""
     name = short_name(filename)
     return bool(_MANAGER.search(name) or (_MOVES.search(name) and not _RECORDS.search(name)))
+
+
+def may_drive(filename: str, words: Set[str], joints: Set[str]) -> bool:
+    """Whether a plugin is not supported, and the `words` in its tags name some of the `joints`."""
+    name = short_name(filename)
+    known = plugin_named(filename) or name in BUILT_IN or name in WITHOUT_EFFECT
+    return not known and not reports(name) and not joints.isdisjoint(words)
 
 
 def managers(robot: RobotDescription, *, jointless: bool = False) -> list[PluginTag]:

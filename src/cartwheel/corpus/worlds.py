@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from pathlib import Path
 
-from cartwheel.corpus.movers import is_mover
+from cartwheel.corpus.movers import is_mover, may_drive
 from cartwheel.description import load_world
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.regular_files import read_regular_text
@@ -105,5 +105,16 @@ def _robot(model: Node) -> str:
     static = model.child("static")
     if static is not None and static.text.strip().lower() in ("1", "true"):
         return ""
-    moves = any(is_mover(plugin.get("filename") or "") for plugin in model.all("plugin"))
+    joints = {each.get("name") or "" for each in model.all("joint") if each.get("type") != "fixed"}
+    moves = any(_moves(plugin, joints) for plugin in model.all("plugin"))
     return (model.get("name") or "").strip() if moves else ""
+
+
+def _moves(plugin: Node, joints: Set[str]) -> bool:
+    """Whether a plugin moves its model: by its name, or because it names joints of the model."""
+    name, words, remaining = plugin.get("filename") or "", set[str](), [plugin]
+    while remaining:
+        node = remaining.pop()
+        words.update(node.text.split())
+        remaining += node.children
+    return is_mover(name) or may_drive(name, words, joints)
