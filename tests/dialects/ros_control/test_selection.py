@@ -158,6 +158,25 @@ def test_the_urdf_of_a_model_in_a_world_lists_the_joints_of_its_controllers(mode
         assert world.model("arm").joint("beam_joint") == pytest.approx(0.5, abs=1e-3)
 
 
+@pytest.mark.parametrize(("spawned", "driven"), [("arm", True), ("other", False)])
+def test_a_model_in_a_saved_world_has_the_hardware_of_the_urdf_that_was_spawned(
+    model, spawned, driven
+):
+    """Neither the launch file nor the name of the URDF refers to the world."""
+    launch = f"""<launch>
+      <param name="robot_description" command="xacro $(find arm)/urdf/robot.urdf.xacro"/>
+      <node pkg="gazebo_ros" type="spawn_model" name="s"
+        args="-urdf -param robot_description -model {spawned}"/></launch>"""
+    urdf = robot(beam("beam", "world") + SYSTEM, "")
+    files = {"launch__sim_dot_launch": launch, "urdf__robot_dot_urdf_dot_xacro": urdf}
+    path = model(ROS2, **files).parents[2]
+    world_file = path / "worlds/hall.world"
+    world_file.parent.mkdir(exist_ok=True)
+    world_file.write_text(in_world(ROS2.format(file=path / "config/arm.yaml")))
+    found = selection.world_with_published_control(load_world(world_file))
+    assert bool(found.models[0].ros2_control) == driven
+
+
 def test_launch_files_are_read_once_for_all_models_of_a_world(model, monkeypatch):
     path = model(ROS2, worlds__arm_dot_urdf=robot(beam("beam", "world") + SYSTEM, "")).parents[2]
     world_file = path / "worlds/hall.world"

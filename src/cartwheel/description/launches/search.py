@@ -118,6 +118,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 simulated=facts.simulated,
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,
+                models=tuple(dict.fromkeys(each.name for each in facts.spawns if each.name)),
             )
         )
     return found

@@ -78,6 +78,8 @@ class LaunchUse:
     then be any file, also one that is not a robot."""
     world: str = ""
     """The world that it starts, as it is stated; empty if there is none."""
+    models: tuple[str, ...] = ()
+    """The names that it gives to the models that it spawns."""
 
 
 def only_loaded(loaded: Iterable[str], spawned: Collection[str]) -> tuple[str, ...]:

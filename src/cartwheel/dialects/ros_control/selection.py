@@ -249,8 +249,9 @@ def with_published_control(
     """An SDF model with the hardware of the URDF from which it was made; otherwise the same robot.
 
     The URDF is one that a launch file names, first one in the launch file that spawns the model or
-    starts its world, or has the name of the model or of its folder and is beside it. Its hardware
-    must list only joints of the model.
+    starts its world, or that spawns a model of this name, as in a world that was saved; or it has
+    the name of the model or of its folder and is beside it. Its hardware must list only joints of
+    the model.
 
     Args:
         robot: The robot.
@@ -369,7 +370,9 @@ def _candidates(
     ]
     for each in sorted(others, key=lambda each: each.file not in own):
         if each.description is not None and (
-            each.file in own or each.description.name.split(".")[0] == robot.name
+            each.file in own
+            or robot.name in each.models
+            or each.description.name.split(".")[0] == robot.name
         ):
             yield each.description, dict(each.arguments)
     names = dict.fromkeys((robot.name, file.stem, file.absolute().parent.name))
