@@ -166,6 +166,29 @@ def test_controllers_that_a_spawner_only_loads_are_not_started(package, words):
     assert use.spawned == ("arm_controller", "joints")
 
 
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("unspawner", "arm_controller"),
+        ("controller_manager", "stop arm_controller"),
+        ("controller_manager", "list"),
+    ],
+)
+def test_other_programs_of_ros1_start_no_controller(package, kind, words):
+    node = f'<node name="s" pkg="controller_manager" type="{kind}" args="{words}"/>'
+    folder = package(sim_dot_launch=ROS1, control_dot_launch=f"<launch>{node}</launch>")
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert (use.spawned, use.loaded) == ((), ())
+
+
+def test_commands_in_launch_files_of_ros2_in_xml(package):
+    command = "ros2 control load_controller --set-state active arm_controller"
+    text = ROS2_XML.replace("</launch>", f'<executable cmd="{command}"/></launch>')
+    folder = package(sim_dot_launch_dot_xml=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == ("arm_controller",)
+
+
 def test_launch_files_of_ros2_in_xml(package):
     folder = package(sim_dot_launch_dot_xml=ROS2_XML)
     use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))

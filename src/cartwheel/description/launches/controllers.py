@@ -24,6 +24,8 @@ _SWITCHES = _INACTIVE | {
     "--no-switch-asap",
 }
 """Options of spawners without a value."""
+_OTHER_VERBS = frozenset({"stop", "unload", "kill", "list", "list-types", "reload-libraries"})
+"""Commands of ROS 1's ``controller_manager`` that start and load nothing."""
 _STATE = frozenset({"--set-state", "--set_state"})
 _VALUED = _STATE | _MANAGERS | {"--spin-time", "--switch-timeout"}
 """Options of ``ros2 control`` with a value."""
@@ -52,8 +54,13 @@ class ControllerCommand:
 
 
 def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
-    """The controllers of a spawner with these arguments, in its namespace."""
+    """The controllers of a spawner with these arguments, in its namespace.
+
+    ROS 1's program ``controller_manager`` has the same arguments after a command such as ``spawn``.
+    """
     words = _apart(words)
+    if words and words[0] in _OTHER_VERBS:
+        return ControllerCommand(space="")
     names: list[str] = []
     files: list[str] = []
     options = iter(words)

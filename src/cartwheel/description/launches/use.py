@@ -47,7 +47,7 @@ _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
-_CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
+_CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

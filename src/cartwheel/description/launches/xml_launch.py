@@ -80,6 +80,8 @@ class _Reader:
                 facts.parameters(self._value(node, "file"), self._value(node, "ns"))
         elif tag == "ros_gz_bridge":
             facts.bridge(self._value(node, "config_file"))
+        elif tag == "executable":
+            facts.command(split(self._value(node, "cmd")))
         elif tag == "node":
             kind = "exec" if "exec" in node.attributes else "type"
             package = self._value(node, "pkg")
