@@ -234,3 +234,9 @@ WHEELS_BRAKED = Code(
     "warning",
     "wheels without motors brake a robot more than its driven wheels can push it",
 )
+WHEEL_FRICTION_OBLIQUE = Code(
+    "CW256",
+    "wheel-friction-oblique",
+    "warning",
+    "the friction of a driven wheel is oblique to its rolling direction",
+)

@@ -35,6 +35,7 @@ _DRIVING = frozenset(
         robot.WHEEL_AXIS_MISALIGNED,
         robot.WHEEL_NOT_ROUND,
         robot.WHEEL_FRICTIONLESS,
+        robot.WHEEL_FRICTION_OBLIQUE,
         robot.WHEEL_WITHOUT_COLLISION,
         robot.WHEELS_OFF_GROUND,
         robot.BODY_ON_GROUND,
