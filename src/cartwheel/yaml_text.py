@@ -27,6 +27,8 @@ _ANGLES = {"deg": math.pi / 180.0, "rad": 1.0}
 """Factors to radians by the function's name in a file of rosparam."""
 _LONGEST_ANGLE = 100
 """Maximum length of the text of an angle."""
+_EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[eE][-+]?\d+")
+"""Numbers that YAML 1.1 reads as texts if the dot or the sign of the exponent is missing."""
 _OPERATIONS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -147,6 +149,40 @@ def rosparam_loader() -> type[yaml.SafeLoader]:
         pattern = re.compile(rf"^{name}\([^)]*\)$")
         Loader.add_implicit_resolver(tag, pattern, [name[0]])
     return Loader
+
+
+def as_ros2(node: Any) -> None:
+    """Merges mappings with the same key and reads ``1e6`` as a number, as ROS 2 does.
+
+    In YAML 1.1, and in ROS 1, the last of the mappings is used, and ``1e6`` is a text.
+
+    Args:
+        node: The root of a composed YAML document, which is changed.
+    """
+    _as_ros2(node, set())
+
+
+def _as_ros2(node: Any, seen: set[int]) -> None:
+    if id(node) in seen:
+        return
+    seen.add(id(node))
+    if node.id == "scalar":
+        if node.style is None and _EXPONENT.fullmatch(node.value):
+            node.tag = "tag:yaml.org,2002:float"
+        return
+    if node.id == "mapping":
+        kept: list[tuple[Any, Any]] = []
+        first: dict[str, Any] = {}
+        for key, value in node.value:
+            before = first.get(str(key.value))
+            if before is not None and before.id == value.id == "mapping":
+                before.value = [*before.value, *value.value]
+            else:
+                kept.append((key, value))
+                first[str(key.value)] = value
+        node.value = kept
+    for each in node.value:
+        _as_ros2(each[1] if node.id == "mapping" else each, seen)
 
 
 def _angle_constructor(factor: float) -> Callable[[Any, Any], float]:

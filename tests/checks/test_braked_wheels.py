@@ -37,6 +37,16 @@ def slips_at(mu, damping, friction=0.0):
         ('damping="0.5"', "", slips_at(1.0, 0.5)),
         ('damping="0.5"', "<mu1>0.5</mu1><mu2>0.5</mu2>", slips_at(0.5, 0.5)),
         ('damping="0.5"', "<mu1>0.9</mu1><mu2>0.2</mu2>", slips_at(0.2, 0.5)),
+        (
+            'damping="0.5"',
+            "<mu1>0.2</mu1><mu2>0.9</mu2><fdir1>0 0 1</fdir1>",
+            slips_at(0.9, 0.5),
+        ),
+        (
+            'damping="0.5"',
+            "<mu1>0.9</mu1><mu2>0.2</mu2><fdir1>1 0 0</fdir1>",
+            slips_at(0.9, 0.5),
+        ),
         ('damping="0.5" friction="0.5"', "", slips_at(1.0, 0.5, 0.5)),
         ('damping="0" friction="2"', "", 0.0),
         ('damping="0" friction="1"', "", None),
@@ -48,6 +58,12 @@ def test_brakes_that_exceed_the_grip_at_a_low_speed_are_reported(tmp_path, dynam
     assert [each.values["speed"] for each in findings] == (
         [] if speed is None else [pytest.approx(speed)]
     )
+
+
+@pytest.mark.wording
+def test_friction_that_exceeds_the_grip_brakes_at_any_speed(tmp_path):
+    (finding,) = found(tmp_path, car('damping="0" friction="2"'), WHEELS_BRAKED)
+    assert finding.message.endswith("its driven wheels slip at any speed")
 
 
 def test_wheels_with_motors_brake_nothing(tmp_path):

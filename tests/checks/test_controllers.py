@@ -211,3 +211,36 @@ def test_of_a_repeated_key_the_last_value_counts(spoil, received):
     (repeated,) = received(spoil(ROS1, *wheels), f"{once}  wheel_separation_multiplier: 1.0\n")
     assert repeated.code.name == "controller-parameter-repeated"
     assert (repeated.origin.line, repeated.values["line"]) == (2, 8)
+
+
+def test_ros2_merges_the_parameters_of_a_node_that_is_named_twice(received, spoil):
+    twice = """controller_manager:
+  ros__parameters:
+    base: {type: diff_drive_controller/DiffDriveController}
+base:
+  ros__parameters:
+    left_wheel_names: [left_wheel_joint]
+    right_wheel_names: [right_wheel_joint]
+    wheel_separation: 0.9
+controller_manager:
+  ros__parameters: {update_rate: 100}
+base:
+  ros__parameters: {wheel_radius: 0.08, wheel_separation: 0.4}
+"""
+    (found,) = received(spoil(ROS1), twice)
+    assert found.code.name == "controller-parameter-repeated"
+    assert (found.values["name"], found.origin.line, found.values["line"]) == (
+        "wheel_separation",
+        8,
+        12,
+    )
+
+
+def test_a_mapping_may_merge_several_others(arm, received):
+    base = "a: &a {publish_rate: 10}\nb: &b {wait: 1}\n"
+    drive = WHEELS.replace("drive:\n", "drive:\n  <<: *a\n  <<: *b\n")
+    assert not [each for each in received(arm, base + drive) if "repeated" in each.code.name]
+
+
+def test_a_file_with_comments_only_is_read(arm, received):
+    assert not received(arm, "# The joints are $(arg prefix)elbow.\n")

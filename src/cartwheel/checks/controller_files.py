@@ -18,6 +18,8 @@ from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _MAX_BYTES = 1_000_000
 _ROS2 = "ros__parameters"
+_MERGE = "tag:yaml.org,2002:merge"
+"""The tag of the key ``<<``."""
 _DEEPEST = 4
 """Maximum nesting of namespaces around a ROS 1 controller."""
 
@@ -181,7 +183,9 @@ class ControlFile:
                 values={"problem": str(problem)},
                 origin=Origin(file=str(self.path), line=mark.line + 1 if mark is not None else 0),
             )
-        if self.robot is not None and "$(" in text:
+        if root is not None and _ROS2 in text:
+            yaml_text.as_ros2(root)
+        if root is not None and self.robot is not None and "$(" in text:
             self._fill(root, self.robot)
         return root
 
@@ -259,7 +263,8 @@ def _scalars(root: Any) -> Iterator[Any]:
 def pairs(node: Any) -> list[tuple[Any, Any]]:
     """The key-value pairs of a mapping; empty for any other node.
 
-    Of a repeated key, the last one counts, as in ROS.
+    Of a repeated key, the last one counts, as in ROS. In a file of ROS 2, mappings with the same
+    key are already merged.
     """
     return list({key.value: (key, value) for key, value in _all_pairs(node)}.values())
 
@@ -281,7 +286,8 @@ def repeated_keys(node: Any) -> Iterator[tuple[Any, Any]]:
             continue
         last = {key.value: key for key, _ in _all_pairs(one)}
         for key, value in _all_pairs(one):
-            if key is not last[key.value]:
+            # A mapping may merge several others.
+            if key is not last[key.value] and key.tag != _MERGE:
                 yield key, last[key.value]
             remaining.append(value)
 

@@ -33,6 +33,8 @@ _AHEAD = 0.02
 """Minimum distance between the axles of a caster and of the driven wheels, m."""
 _NEAR = 0.006
 """Maximum difference in height between parts that touch the ground, m."""
+_ALONG = 0.1
+"""Smallest component of a direction in which a coefficient limits the friction."""
 _UP = np.array([0.0, 0.0, 1.0])
 _GRAVITY = 9.8
 """m/s²."""
@@ -224,8 +226,7 @@ def braking(robot: Robot, driven: Sequence[Joint]) -> Braking | None:
     y = np.array([float(axle @ each) for each in places])
     loads = _loads(x, y, (_ahead(axle, center), float(axle @ center)))[: len(driven)]
     weight = robot.description.mass * _GRAVITY
-    # Without a direction, the coefficients are those along the axes of the world.
-    grips = [min(_coefficients(robot, joint.child)) for joint in driven]
+    grips = [_grip(robot, joint.child, axle) for joint in driven]
     traction = weight * sum(load * mu for load, mu in zip(loads, grips, strict=True))
     radii = [wheel_radius(robot, joint) or 1.0 for joint in braked]
     least = sum(each.axis.friction / r for each, r in zip(braked, radii, strict=True))
@@ -338,6 +339,23 @@ def _coefficients(robot: Robot, link: str) -> tuple[float, float]:
         second = first if surface.mu2 is None else surface.mu2
         return min(first, 1.0), min(second, 1.0)
     return 1.0, 1.0
+
+
+def _grip(robot: Robot, link: str, axle: Floats) -> float:
+    """Coefficient in the direction in which a wheel rolls, at most 1."""
+    coefficients = _coefficients(robot, link)
+    surface = next((each.surface for each in robot.links[link].collisions), None)
+    if surface is None or surface.fdir1 is None:
+        # The coefficients are those along the axes of the world.
+        return min(coefficients)
+    parts = _direction(robot, link, axle)
+    if surface.fdir1_frame is None:
+        # The direction turns with the wheel, and is that of its axle or of its rolling.
+        pose = robot.links[link].pose @ robot.links[link].collisions[0].pose
+        along = abs(float(axle @ np.array(rotate(pose.orientation, surface.fdir1))))
+        parts = (0.0, 1.0) if along > np.linalg.norm(surface.fdir1) / 2 else (1.0, 0.0)
+    pairs = zip(coefficients, parts, strict=True)
+    return min(1.0, *(mu / abs(part) for mu, part in pairs if abs(part) > _ALONG))
 
 
 def _direction(robot: Robot, link: str, axle: Floats) -> tuple[float, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _ROS2 = "ros__parameters"
-_EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[eE][-+]?\d+")
-"""Numbers that YAML 1.1 reads as texts if the dot or the sign of the exponent is missing."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -158,7 +155,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
         loader = (yaml_text.loader() if ros2 else yaml_text.rosparam_loader())(text)
         node = loader.get_single_node()
         if node is not None and ros2:
-            _as_ros2(node, set())
+            yaml_text.as_ros2(node)
         content = loader.construct_document(node) if node is not None else None
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         text, line = yaml_text.fault(error)
@@ -172,33 +169,6 @@ def read_yaml(path: Path) -> dict[str, Any]:
 
 def _unreadable(message: str, origin: Origin) -> PluginError:
     return PluginError(message, code=devices.CONTROLLERS_FILE_UNREADABLE, origin=origin)
-
-
-def _as_ros2(node: Any, seen: set[int]) -> None:
-    """Merges mappings with the same key and reads ``1e6`` as a number, as ROS 2 does.
-
-    In YAML 1.1, and in ROS 1, the last of the mappings is used, and ``1e6`` is a text.
-    """
-    if id(node) in seen:
-        return
-    seen.add(id(node))
-    if node.id == "scalar":
-        if node.style is None and _EXPONENT.fullmatch(node.value):
-            node.tag = "tag:yaml.org,2002:float"
-        return
-    if node.id == "mapping":
-        kept: list[tuple[Any, Any]] = []
-        first: dict[str, Any] = {}
-        for key, value in node.value:
-            before = first.get(str(key.value))
-            if before is not None and before.id == value.id == "mapping":
-                before.value = [*before.value, *value.value]
-            else:
-                kept.append((key, value))
-                first[str(key.value)] = value
-        node.value = kept
-    for each in node.value:
-        _as_ros2(each[1] if node.id == "mapping" else each, seen)
 
 
 def for_robot(content: dict[str, Any], path: Path, robot: RobotDescription) -> dict[str, Any]:

@@ -39,9 +39,10 @@ def _driven(subject: Subject) -> Iterator[tuple[Robot, Sequence[str]]]:
 def _finding(found: Braking) -> Diagnostic:
     names = [f'"{joint.name}"' for joint in found.joints]
     said = f"joint {names[0]}" if len(names) == 1 else f"joints {', '.join(names)}"
+    slips = f"slip above {found.speed:.2g} m/s" if found.speed else "slip at any speed"
     return robot_codes.WHEELS_BRAKED.diagnostic(
         message=f"the damping and friction of {said}, which no motor turns, brake the robot: its "
-        f"driven wheels slip above {found.speed:.2g} m/s",
+        f"driven wheels {slips}",
         values={"joint": found.joints[0].name, "speed": found.speed, "traction": found.traction},
         origin=found.joints[0].origin,
         hint="Decrease the damping and friction of these joints, increase the friction "
