@@ -3,6 +3,7 @@
 import pytest
 from tests.corpus.carts import cart, controlled
 
+from cartwheel.checks import controller_search
 from cartwheel.checks.checking import check
 from cartwheel.codes.devices import CONTROLLER_UNDEFINED
 from cartwheel.codes.robot import WHEEL_SEPARATION_MISMATCH
@@ -46,3 +47,22 @@ def test_a_controller_that_no_file_defines_is_found(tmp_path, named):
     found = [each for each in check(path).findings if each.code is CONTROLLER_UNDEFINED]
     assert [each.values["controller"] for each in found] == ["arm"]
     assert found[0].origin.file.endswith("cart.launch.xml")
+
+
+def test_the_launch_files_near_the_robots_of_a_world_are_read_once(tmp_path, monkeypatch):
+    read = []
+
+    def near(folder, package_path=()):
+        read.append(folder)
+        return ()
+
+    monkeypatch.setattr(controller_search, "launches_near", near)
+    (tmp_path / "package.xml").write_text("<package><name>hall</name></package>")
+    control = '<plugin filename="gz_ros2_control-system" name="c"/>'
+    models = "".join(
+        f'<model name="m{number}"><link name="l"/>{control}</model>' for number in range(3)
+    )
+    path = tmp_path / "hall.world"
+    path.write_text(f'<sdf version="1.6"><world name="hall">{models}</world></sdf>')
+    check(path)
+    assert len(read) == 1

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, partial
 from pathlib import Path
 
 from cartwheel.checks.controller_files import ControlFile
@@ -12,6 +13,7 @@ from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.launches import (
+    LaunchUse,
     chosen,
     launches_near,
     own_folder,
@@ -38,6 +40,8 @@ def controller_files_of(
     """
     found: list[tuple[Robot, ControlFile]] = []
     problems: list[Diagnostic] = []
+    # The robots of a world are often in one folder.
+    launches_in = cache(partial(launches_near, package_path=packages.package_path))
     for robot in robots:
         described = robot.description
         found += [
@@ -49,7 +53,7 @@ def controller_files_of(
                 file = ControlFile(path=path, named=True, element=element, robot=described)
                 found.append((robot, file))
         if not given:
-            launched = _launched(robot, packages.package_path)
+            launched = _launched(robot, launches_in)
             near = dict.fromkeys((*_near(robot), *map(_plain, launched.files)))
             found += [
                 (robot, ControlFile(path=path, named=False, robot=described)) for path in near
@@ -67,13 +71,13 @@ def _near(robot: Robot) -> Iterator[Path]:
         yield from (path for path in found if _belongs(path, file))
 
 
-def _launched(robot: Robot, package_path: Sequence[Path]) -> Selection:
-    """What launch files load for the controllers of a robot."""
+def _launched(robot: Robot, launches_in: Callable[[Path], Sequence[LaunchUse]]) -> Selection:
+    """What launch files load for the controllers of a robot; see `launches_near`."""
     file = Path(robot.description.origin.file)
     folder = root_of(file)
     if folder is None or not is_controlled(robot.description):
         return Selection(files=(), names=())
-    launches = own_launches(file, launches_near(folder, package_path))
+    launches = own_launches(file, launches_in(folder))
     use = chosen(file, launches)
     return selection(robot.description, use, launches, within=own_folder(file))
 
