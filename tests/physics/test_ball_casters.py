@@ -83,8 +83,8 @@ def driven(world, forward, turn, seconds=6.0):
 
 @pytest.mark.parametrize("turn", [0.5, 1.5])
 def test_two_balls_at_one_point_do_not_brake_a_turn(make, turn):
-    """One rolls forward and one sideways. By Coulomb's law, the base turns as told: the ball that
-    rolls forward carries a sixth of the weight, at twice the lever of the wheels.
+    """One rolls forward and one sideways. By Coulomb's law, the base turns as commanded: the ball
+    that rolls forward carries a sixth of the weight, at twice the lever of the wheels.
     """
     _, rate, _ = driven(cart(make, two_balls()), 0.0, turn)
     assert rate == pytest.approx(turn, rel=0.04)
@@ -106,7 +106,7 @@ def test_a_ball_on_crossed_axles_rolls_in_both_directions(make, axles):
 def test_a_ball_on_crossed_axles_slides_while_its_inner_axle_is_upright(make, axles):
     """On an arc, the outer axle turns the inner one past the vertical, where both cannot roll.
 
-    With exact Coulomb friction, the slip is 0.11. The base moves as told.
+    With exact Coulomb friction, the slip is 0.11. The base moves as commanded.
     """
     speed, rate, slip = driven(cart(make, crossed(*axles)), 0.2, 0.5)
     assert speed == pytest.approx(0.2, rel=0.01)

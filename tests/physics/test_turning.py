@@ -151,15 +151,34 @@ def turning_rate(track, wheelbase, shift, turn):
     return bisect(torque, 1e-6, turn)
 
 
+def with_tyres(links):
+    """The links, where the collision of each wheel belongs to a link of almost no mass."""
+    wheel = r'(<link name="(\w+)"><pose relative_to="base">[^<]*</pose>.{0,200}?</inertial>)'
+    tyre = r"""\1</link><link name="\2_tyre"><pose relative_to="\2"/><inertial><mass>1e-4</mass>
+      <inertia><ixx>1e-7</ixx><iyy>1e-7</iyy><izz>1e-7</izz></inertia></inertial>\3</link>
+      <joint name="\2_tyre_joint" type="fixed"><parent>\2</parent><child>\2_tyre</child></joint>"""
+    links, count = re.subn(
+        wheel + r'(<collision name="tyre">.*?</collision>)</link>', tyre, links, flags=re.DOTALL
+    )
+    assert count == 4
+    return links
+
+
+@pytest.mark.parametrize("apart", [False, True])
 @pytest.mark.parametrize("inertia", [1e-4, 1e-6])
-def test_light_wheels_of_a_heavy_skid_steer_follow_their_motors(make, inertia):
-    """Their motors do not slip, although the inertia is 25 to 2500 times too small."""
+def test_light_wheels_of_a_heavy_skid_steer_follow_their_motors(make, inertia, apart):
+    """Their motors do not slip, although the inertia is 25 to 2500 times too small.
+
+    The shapes of the wheels may belong to links that are fixed to them.
+    """
     base = skid_steer(1.0)
     wheel = r"(<mass>0.5</mass><inertia>).*?</inertia>"
     light = "".join(f"<{each}>{inertia}</{each}>" for each in ("ixx", "iyy", "izz"))
     links, count = re.subn(wheel, rf"\1{light}</inertia>", base.links, flags=re.DOTALL)
     assert count == 4
     links = links.replace("<mass>20</mass>", "<mass>200</mass>")
+    if apart:
+        links = with_tyres(links)
     _, rate = motion(driven(make, replace(base, links=links, torque=500.0)), turn=RATE)
     assert rate == pytest.approx(RATE / 2, rel=0.02)
 

@@ -136,7 +136,9 @@ def stiffen_rotors(model: mujoco.MjModel) -> None:
         weight = model.body_subtreemass[model.body_rootid[body]] * _GRAVITY
         lever = 1.0
         if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE:
-            lever = model.geom_rbound[model.geom_bodyid == body].max(initial=0.0)
+            # Also the shapes of links that are fixed to the wheel.
+            shapes = model.body_weldid[model.geom_bodyid] == model.body_weldid[body]
+            lever = model.geom_rbound[shapes].max(initial=0.0)
         load = min(model.tendon_frictionloss[tendon], weight * lever)
         if load > 0:
             most = _SLIP / lever * rate / (softness * load)
