@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.model import Joint, Link, RobotDescription
-from cartwheel.geometry import matrix_from_quat, rotate
+from cartwheel.description.model import Inertial, Joint, Link, RobotDescription
+from cartwheel.geometry import cross, matrix_from_quat, rotate
 
 Array = NDArray[np.float64]
 
@@ -25,29 +25,34 @@ def inertial_efforts(description: RobotDescription) -> dict[str, float]:
     add up. The joints are at 0, where most arms are extended, and the root does not move.
 
     Args:
-        description: The robot. Joints that a loop closes are ignored.
+        description: The robot. Joints that close a loop are ignored.
 
     Returns:
         Efforts by the name of the joint; empty for robots with more than 200 movable joints.
     """
-    joints = [each for each in description.joints if _rate(each)]
-    if len(joints) > _MOST:
-        return {}
-    index = {joint.name: number for number, joint in enumerate(joints)}
     links = {link.name: link for link in description.links}
     inbound: dict[str, Joint] = {}
     for joint in description.joints:
         inbound.setdefault(joint.child, joint)
-    mass = np.zeros((len(joints), len(joints)))
+    joints = [each for each in inbound.values() if _rate(each) and each.child in links]
+    if len(joints) > _MOST:
+        return {}
+    number = {joint.child: index for index, joint in enumerate(joints)}
+    above = _above(links, inbound, number)
+    # Of links that are fixed to each other, only the sum counts.
+    inertias: dict[int, tuple[list[int], Array]] = {}
     for link in description.links:
-        moving = [each for each in _above(link, inbound, links) if each.name in index]
-        if link.inertial is not None and moving:
-            rows = [index[each.name] for each in moving]
-            mass[np.ix_(rows, rows)] += _mass_of(
-                link, [(each, links[each.child]) for each in moving]
-            )
+        rows = above[link.name]
+        if link.inertial is not None and rows:
+            _, total = inertias.setdefault(rows[-1], (rows, np.zeros((6, 6))))
+            total += _inertia(link, link.inertial)
+    twists = _twists(joints, links)
+    mass = np.zeros((len(joints), len(joints)))
+    for rows, inertia in inertias.values():
+        mass[np.ix_(rows, rows)] += twists[rows] @ inertia @ twists[rows].T
     rates = np.array([_rate(each) for each in joints])
-    return dict(zip(index, (np.abs(mass) @ rates).tolist(), strict=True))
+    efforts = (np.abs(mass) @ rates).tolist()
+    return {joint.name: effort for joint, effort in zip(joints, efforts, strict=True)}
 
 
 def _rate(joint: Joint) -> float:
@@ -57,35 +62,53 @@ def _rate(joint: Joint) -> float:
     return _SLIDING if joint.type == "prismatic" else 0.0
 
 
-def _above(link: Link, inbound: dict[str, Joint], links: dict[str, Link]) -> Iterator[Joint]:
-    """The joints from a link to the root."""
-    seen = set[str]()
-    name = link.name
-    while name in inbound and name in links and name not in seen:
-        seen.add(name)
-        yield inbound[name]
-        name = inbound[name].parent
+def _above(
+    links: Mapping[str, Link], inbound: Mapping[str, Joint], number: Mapping[str, int]
+) -> dict[str, list[int]]:
+    """The numbers of the joints from each link to the root, by link."""
+    found: dict[str, list[int]] = {}
+    for start in links:
+        way, name = dict[str, None](), start
+        while name in links and name not in found and name not in way:
+            way[name] = None
+            name = inbound[name].parent if name in inbound else ""
+        rows = found.get(name, [])
+        for each in reversed(way):
+            rows = [*rows, number[each]] if each in number else rows
+            found[each] = rows
+    return found
 
 
-def _mass_of(link: Link, joints: list[tuple[Joint, Link]]) -> Array:
-    """A link's part of the mass matrix of the joints that move it, shape (n, n)."""
-    inertial = link.inertial
-    assert inertial is not None
-    pose = link.pose @ inertial.pose
-    centre = np.array(pose.position)
-    turn = matrix_from_quat(pose.orientation)
-    xy, xz, yz = inertial.products
-    tensor = np.diag(inertial.diagonal) + np.array([[0, xy, xz], [xy, 0, yz], [xz, yz, 0]])
-    tensor = turn @ tensor @ turn.T
-    linear, angular = np.zeros((len(joints), 3)), np.zeros((len(joints), 3))
-    for number, (joint, child) in enumerate(joints):
-        frame = child.pose @ joint.pose
+def _twists(joints: Sequence[Joint], links: Mapping[str, Link]) -> Array:
+    """The motion of a body at the origin that each joint moves with a rate of 1.
+
+    Returns:
+        Angular and linear velocities, rad/s and m/s, shape (n, 6).
+    """
+    twists = np.zeros((len(joints), 6))
+    for twist, joint in zip(twists, joints, strict=True):
+        frame = links[joint.child].pose @ joint.pose
         axis = np.array(rotate(frame.orientation, joint.axis.xyz))
         axis = axis / (np.linalg.norm(axis) or 1.0)
         if joint.type == "prismatic":
-            linear[number] = axis
+            twist[3:] = axis
         else:
-            linear[number] = np.cross(axis, centre - np.array(frame.position))
-            angular[number] = axis
-    matrix: Array = inertial.mass * linear @ linear.T + angular @ tensor @ angular.T
-    return matrix
+            twist[:3], twist[3:] = axis, cross(frame.position, axis)
+    return twists
+
+
+def _inertia(link: Link, inertial: Inertial) -> Array:
+    """The spatial inertia of a link for motions of `_twists`, shape (6, 6)."""
+    pose = link.pose @ inertial.pose
+    turn = matrix_from_quat(pose.orientation)
+    xy, xz, yz = inertial.products
+    tensor = np.diag(inertial.diagonal) + np.array([[0, xy, xz], [xy, 0, yz], [xz, yz, 0]])
+    x, y, z = pose.position
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    moment = inertial.mass * across
+    return np.block(
+        [
+            [turn @ tensor @ turn.T - moment @ across, moment],
+            [-moment, inertial.mass * np.eye(3)],
+        ]
+    )
