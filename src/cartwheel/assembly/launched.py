@@ -91,8 +91,10 @@ def open_launch(
     names = {each.name for each in (*opened.models, *(each.description for each in models))}
     robots: dict[object, RobotDescription] = {}
     spawned = [each for each in start.models if not each.is_shown]
-    # Of those that are only published, one is shown where there is no other model.
-    for each in spawned or shown[: not models]:
+    if not spawned and not models:
+        # Of those that are only published, one is shown where there is no other model.
+        spawned = shown[:1]
+    for each in spawned:
         # Several models may have the same description.
         key = (each.description, frozenset(each.use.arguments.items()))
         if key not in robots:
