@@ -112,3 +112,22 @@ def test_the_work_of_all_launch_files_is_limited(
     (package / "c.yaml").write_text("# " + "-" * 20_000)
     assert _is_read_to_the_end(package, "a.launch.py", "x = 1")
     assert not _is_read_to_the_end(package, "a.launch.py", text)
+
+
+def test_the_values_that_a_function_returns_take_a_limited_time(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(effort, "_STEPS", 200_000)
+    text = """
+def found():
+    long = ["a", "b"]
+    DOUBLED
+    for _ in range(5000):
+        if unknown():
+            return VALUE
+    return VALUE
+
+x = found()
+""".replace("DOUBLED", "; ".join(["long = long + long"] * 12))
+    assert _is_read_to_the_end(package, "a.launch.py", text.replace("VALUE", '"a"'))
+    assert not _is_read_to_the_end(package, "a.launch.py", text.replace("VALUE", "[long]"))

@@ -438,7 +438,7 @@ class _Reader:
         if not found:
             return NOTHING
         (first, _), (last, value) = found[0], found[-1]
-        if differ(each for _, each in found):
+        if differ((each for _, each in found), self._facts.effort):
             place = (self._path, first)
             self._facts.uncertain.setdefault(place, (function.name, last))
         return NOTHING if value is None else value

@@ -28,6 +28,8 @@ class Description:
 
 
 NOTHING = Unknown()
+_JOINING = 1000
+"""Steps to join a list, which may be long."""
 _LARGEST = 1e9
 _NUMBERS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -159,14 +161,16 @@ def loaded(path: str, effort: Effort) -> Any:
         return NOTHING
 
 
-def differ(values: Iterable[Any]) -> bool:
+def differ(values: Iterable[Any], effort: Effort) -> bool:
     """Whether a value is known and another one is not equal to it."""
     found: set[tuple[bool, Any]] = set()
     for value in values:
-        said: Any = joined(value).strip(UNKNOWN) if not isinstance(value, Description) else ""
+        effort.spend(_JOINING if isinstance(value, list) else 1)
         described = isinstance(value, Description)
-        found.add((described, value.number if described else said))
-    return len(found) > 1
+        found.add((described, value.number if described else joined(value).strip(UNKNOWN)))
+        if len(found) > 1:
+            return True
+    return False
 
 
 def is_known(*values: Any) -> bool:
