@@ -57,7 +57,10 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         and not _RECORDS.search(name)
         and (
             _MOVES.search(name)
-            or (_may_move(tag) and (waits or _TRAVELS.search(name) or _acts(tag.element, joints)))
+            or (
+                _may_move(tag.filename)
+                and (waits or _TRAVELS.search(name) or _acts(tag.element, joints))
+            )
         )
     ]
 
@@ -70,9 +73,7 @@ def is_mover(filename: str) -> bool:
 
 def may_drive(filename: str, words: Set[str], joints: Set[str]) -> bool:
     """Whether a plugin is not supported, and the `words` in its tags name some of the `joints`."""
-    name = short_name(filename)
-    known = plugin_named(filename) or name in BUILT_IN or name in WITHOUT_EFFECT
-    return not known and not reports(name) and not joints.isdisjoint(words)
+    return _may_move(filename) and not joints.isdisjoint(words)
 
 
 def managers(robot: RobotDescription, *, jointless: bool = False) -> list[PluginTag]:
@@ -87,10 +88,11 @@ def is_known(tag: PluginTag) -> bool:
     return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
 
 
-def _may_move(tag: PluginTag) -> bool:
+def _may_move(filename: str) -> bool:
     """Whether a plugin is not supported, and its name does not say that it only measures."""
-    name = short_name(tag.filename)
-    return not is_known(tag) and not reports(name) and name not in WITHOUT_EFFECT
+    name = short_name(filename)
+    known = plugin_named(filename) or name in BUILT_IN or name in WITHOUT_EFFECT
+    return not known and not reports(name)
 
 
 def _should_move(robot: RobotDescription) -> bool:

@@ -7,6 +7,7 @@ import itertools
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
@@ -179,14 +180,20 @@ def own_launches(
         within: The folder that the user gave.
     """
     repository, own = repository_of(description, within), own_folder(description, within)
-    inside = [each for each in uses if each.file.absolute().is_relative_to(own)]
+    near = [(each, each.file.absolute().is_relative_to(own)) for each in uses]
     if repository is not None:
-        return inside
+        return [each for each, inside in near if inside]
+
+    @cache
+    def is_loose(folder: Path) -> bool:
+        """Whether the files in a folder are in no repository; many launch files are in one."""
+        return repository_of(folder / description.name, within) is None
+
     return [
         each
-        for each in uses
-        if (within is None or each.description is not None or each in inside)
-        and repository_of(each.file, within) is None
+        for each, inside in near
+        if (within is None or each.description is not None or inside)
+        and is_loose(each.file.absolute().parent)
     ]
 
 
