@@ -363,6 +363,39 @@ def generate_launch_description():
 """
 
 
+SPAWNING = """
+from launch_ros.actions import Node
+def spawner(names, active=True, more=None):
+    flags = {flags}
+    return Node(package="controller_manager", executable="spawner", arguments=flags + names)
+def generate_launch_description():
+    robot = Command(["xacro ", FindPackageShare("arm"), "/urdf/arm.urdf.xacro"])
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{{"robot_description": robot}}]),
+        spawner(["a"]), spawner(["b"], active=False), spawner(["c"], more="x"),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("flags", "started"),
+    [
+        ('["--inactive"] if not active else []', ("a", "c")),
+        ('["--inactive"] if active is False or not active else []', ("a", "c")),
+        ('["--inactive"] if more is None and active else []', ("b", "c")),
+        ('["--inactive"] if more is not None or not active else []', ("a",)),
+        ('["--inactive"] if more in ["x", "y"] else []', ("a", "b")),
+        ('[more or "d"]', ("d", "a", "b", "x", "c")),
+        ('["--inactive"] if active == unknown() else []', ()),
+    ],
+)
+def test_conditions_of_python_decide_which_controllers_are_started(package, flags, started):
+    folder = package(arm_dot_launch_dot_py=SPAWNING.format(flags=flags))
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == started
+
+
 @pytest.mark.parametrize(
     ("content", "names"),
     [

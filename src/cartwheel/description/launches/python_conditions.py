@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import ast
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from cartwheel.description.launches.effort import UNKNOWN
-from cartwheel.description.launches.python_values import NOTHING, joined
+from cartwheel.description.launches.python_values import NOTHING, is_known, joined
 
 _VALUES = {"true": True, "1": True, "false": False, "0": False}
 CONDITIONS: Mapping[str, Callable[..., bool]] = {
@@ -38,6 +39,27 @@ def holds(name: str, values: list[Any]) -> Any:
         return condition(*known)
     except TypeError:
         return NOTHING  # a number of arguments that launch rejects
+
+
+def compared(sign: ast.cmpop, left: Any, right: Any) -> bool | None:
+    """Whether a comparison of texts, or with a constant, holds; None if that is unknown."""
+    if isinstance(sign, ast.Is | ast.IsNot) and (right is None or isinstance(right, bool)):
+        return None if left is NOTHING else (left is right) == isinstance(sign, ast.Is)
+    plain = is_known(left, right) or (isinstance(left, bool) and isinstance(right, bool))
+    if isinstance(sign, ast.Eq | ast.NotEq) and plain:
+        return bool(left == right) == isinstance(sign, ast.Eq)
+    within = isinstance(sign, ast.In | ast.NotIn) and isinstance(right, list)
+    if within and is_known(*right) and (left is None or is_known(left)):
+        return (left in right) == isinstance(sign, ast.In)
+    return None
+
+
+def connected(sign: ast.boolop, parts: Sequence[bool | None]) -> bool | None:
+    """Whether conditions that ``and`` or ``or`` connects hold; None if that is unknown."""
+    decides = isinstance(sign, ast.Or)
+    if decides in parts:
+        return decides
+    return None if None in parts else not decides
 
 
 def _truth(text: str) -> bool | None:

@@ -23,7 +23,12 @@ from cartwheel.description.launches.python_actions import (
     start_all,
     used,
 )
-from cartwheel.description.launches.python_conditions import CONDITIONS, holds
+from cartwheel.description.launches.python_conditions import (
+    CONDITIONS,
+    compared,
+    connected,
+    holds,
+)
 from cartwheel.description.launches.python_functions import (
     FIRST,
     JOINS,
@@ -285,6 +290,8 @@ class _Reader:
             }
         if isinstance(node, ast.BinOp):
             return combined(node.op, self.value(node.left), self.value(node.right))
+        if isinstance(node, ast.UnaryOp | ast.BoolOp | ast.Compare):
+            return self._logical(node)
         if isinstance(node, ast.IfExp):
             return self.value(node.orelse if self._holds(node.test) is False else node.body)
         if isinstance(node, ast.Attribute):
@@ -306,13 +313,31 @@ class _Reader:
             return self._call(node)
         return NOTHING
 
+    def _logical(self, node: ast.UnaryOp | ast.BoolOp | ast.Compare) -> Any:
+        """The value of ``not``, ``and``, ``or`` or a comparison; that of ``a or b`` is a or b."""
+        if isinstance(node, ast.BoolOp):
+            *others, last = node.values
+            for each in others:
+                holds = self._holds(each)
+                if holds is None:
+                    return NOTHING
+                if holds is isinstance(node.op, ast.Or):
+                    return self.value(each)
+            return self.value(last)
+        holds = None
+        if isinstance(node, ast.Compare) or isinstance(node.op, ast.Not):
+            holds = self._holds(node)
+        return NOTHING if holds is None else holds
+
     def _holds(self, test: ast.expr) -> bool | None:
-        """Whether a condition on texts holds; None if it is unknown."""
+        """Whether a condition holds; None if it is unknown."""
         if isinstance(test, ast.Compare) and len(test.ops) == 1:
-            left, right = self.value(test.left), self.value(test.comparators[0])
-            if isinstance(test.ops[0], ast.Eq | ast.NotEq) and is_known(left, right):
-                return bool((left == right) == isinstance(test.ops[0], ast.Eq))
-            return None
+            return compared(test.ops[0], self.value(test.left), self.value(test.comparators[0]))
+        if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+            inner = self._holds(test.operand)
+            return None if inner is None else not inner
+        if isinstance(test, ast.BoolOp):
+            return connected(test.op, [self._holds(each) for each in test.values])
         value = self.value(test)
         if value is None or isinstance(value, bool | int | float):
             return bool(value)
