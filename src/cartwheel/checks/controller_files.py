@@ -11,6 +11,7 @@ from typing import Any
 from cartwheel import yaml_text
 from cartwheel.checks import nodes
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.launches.written import written_in
 from cartwheel.description.model import Element, RobotDescription
 from cartwheel.dialects.ros_control.files import read_parameters
 from cartwheel.dialects.ros_control.launch_arguments import launch_arguments, with_arguments
@@ -102,7 +103,9 @@ class Controller:
 
 
 def _start_of(path: Path) -> str:
-    """The beginning of a file, up to the size limit."""
+    """The beginning of a file, up to the size limit; of a launch file, its parameters."""
+    if (written := written_in(path)) is not None:
+        return written
     with path.open("rb") as file:
         return file.read(_MAX_BYTES).decode("utf-8", "replace")
 
@@ -183,7 +186,9 @@ class ControlFile:
                 values={"problem": str(problem)},
                 origin=Origin(file=str(self.path), line=mark.line + 1 if mark is not None else 0),
             )
-        if root is not None and _ROS2 in text:
+        # The elements of a launch file are merged as well.
+        written = self.path.suffix not in (".yaml", ".yml")
+        if root is not None and (_ROS2 in text or written):
             yaml_text.as_ros2(root)
         if root is not None and self.robot is not None and "$(" in text:
             self._fill(root, self.robot)

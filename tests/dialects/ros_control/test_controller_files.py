@@ -7,6 +7,7 @@ from tests.dialects.ros_control.arms import ROS1, beam, robot, ros2_joint, ros2_
 from tests.dialects.ros_control.arms import ros2_system as system
 
 import cartwheel as cw
+from cartwheel.checks.controller_files import ControlFile
 from cartwheel.codes import devices, files, graph, running
 from cartwheel.description import load_robot
 from cartwheel.dialects.ros_control.files import ControllerFiles, read_parameters, ros2_file
@@ -303,3 +304,69 @@ held:
         (refused,) = [d for d in world.diagnostics if d.code is running.CONTROLLER_NOT_STARTED]
         assert refused.values["controller"] == "Revolute 2_controller"
         assert refused.values["cause"] == graph.GRAPH_NAME_INVALID.number
+
+
+INLINE = """<launch>
+  <rosparam>
+    arm:
+      first: {type: effort_controllers/JointPositionController, joint: one}
+  </rosparam>
+  <group ns="arm">
+    <rosparam ns="second">
+      type: position_controllers/JointPositionController
+      joint: two
+    </rosparam>
+    <rosparam param="source_list">[a, b]</rosparam>
+    <rosparam ns="/top" param="third">{type: a/BController, joint: three}</rosparam>
+    <rosparam file="other.yaml" command="load"/>
+  </group>
+</launch>"""
+
+
+def test_a_launch_file_may_contain_the_parameters_itself(tmp_path):
+    file = tmp_path / "sim.launch"
+    file.write_text(INLINE)
+    assert read_parameters(file) == {
+        "arm": {
+            "first": {"type": "effort_controllers/JointPositionController", "joint": "one"},
+            "second": {"type": "position_controllers/JointPositionController", "joint": "two"},
+        },
+        "top": {"third": {"type": "a/BController", "joint": "three"}},
+    }
+    stated = ControlFile(path=file, named=True).controllers
+    assert [(each.name, each.type.node.start_mark.line + 1) for each in stated] == [
+        ("first", 4), ("second", 8), ("third", 12),
+    ]  # fmt: skip
+    file.write_text(INLINE.replace("joint: two", "joint: [two"))
+    with pytest.raises(PluginError) as caught:
+        read_parameters(file)
+    assert caught.value.code is devices.CONTROLLERS_FILE_UNREADABLE
+    file.write_text(INLINE.replace("launch>", "robot>"))
+    with pytest.raises(PluginError):
+        read_parameters(file)
+
+
+def test_controllers_in_a_launch_file_run(tmp_path):
+    """The launch file is found beside the robot, and may be passed as a controller file."""
+    folder = tmp_path / "arm"
+    (folder / "launch").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>arm</name></package>")
+    path = folder / "arm.urdf"
+    path.write_text(robot(beam("b", "world") + transmission("b_joint", "Effort"), ROS1))
+    launch = folder / "launch/sim.launch"
+    launch.write_text(
+        """<launch><param name="robot_description" textfile="$(find arm)/arm.urdf"/>
+        <rosparam>
+          b_controller:
+            type: effort_controllers/JointPositionController
+            joint: b_joint
+            pid: {p: 3000.0, i: 0.0, d: 100.0}
+        </rosparam>
+        <node name="s" pkg="controller_manager" type="spawner" args="b_controller"/></launch>"""
+    )
+    for given in ("auto", [launch]):
+        world = cw.World("empty")
+        arm = world.spawn(path, controllers=given)
+        arm.publish("/b_controller/command", data=0.3)
+        world.run(seconds=3)
+        assert arm.joint("b_joint") == pytest.approx(0.3, abs=0.05)

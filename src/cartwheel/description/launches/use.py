@@ -63,8 +63,9 @@ class LaunchUse:
     unknown: int = 0
     """Number of arguments whose values are unknown."""
     controllers: tuple[Path, ...] = ()
-    """YAML files that it loads. One with a single controller, which a launch file loads into the
-    namespace NAME, is ``NAME=FILE``."""
+    """YAML files that it loads, and launch files that contain parameters of controllers. A file
+    with a single controller, which a launch file loads into the namespace NAME, is
+    ``NAME=FILE``."""
     spawned: tuple[str, ...] = ()
     """Names of the controllers that it starts."""
     loaded: tuple[str, ...] = ()
@@ -352,6 +353,11 @@ class Facts:
             if re.fullmatch(r"\w+", name) and _is_single(path):
                 path, space = Path(f"{name}={path}"), space.rpartition("/")[0]
             self.yamls.append((space, path))
+
+    def written(self, path: Path, namespace: str) -> None:
+        """Adds a launch file that contains parameters of controllers itself."""
+        if (place := (resolved(self.namespace, namespace.strip()), path)) not in self.yamls:
+            self.yamls.append(place)
 
     def include(
         self,

@@ -16,6 +16,7 @@ from cartwheel.description.launches.effort import UNKNOWN, limited
 from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import Facts
+from cartwheel.description.launches.written import has_controllers
 
 _CALL = re.compile(r"\$\(\s*+([\w-]++)\s*+([^()]*+)\)")
 """Without backtracking, whose time would grow with the square of the length."""
@@ -78,6 +79,8 @@ class _Reader:
         elif tag == "rosparam":
             if node.attributes.get("command", "load") == "load" and "file" in node.attributes:
                 facts.parameters(self._value(node, "file"), self._value(node, "ns"))
+            elif node.attributes.get("command", "load") == "load" and has_controllers(node.text):
+                facts.written(self._path, self._value(node, "ns"))
         elif tag == "ros_gz_bridge":
             facts.bridge(self._value(node, "config_file"))
         elif tag == "executable":

@@ -12,6 +12,7 @@ from cartwheel import yaml_text
 from cartwheel.codes import devices
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.readings import Readings
+from cartwheel.description.launches.written import written_in
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.launch_arguments import launch_arguments
 from cartwheel.dialects.ros_control.settings import Settings, merge
@@ -140,7 +141,7 @@ def name_and_file(path: Path) -> tuple[str, Path]:
 
 
 def read_yaml(path: Path) -> dict[str, Any]:
-    """Reads the mapping in a YAML file.
+    """Reads the mapping in a YAML file, or in a launch file of ROS 1.
 
     Raises:
         PluginError: The file cannot be read, is not valid YAML, or is not a mapping.
@@ -148,13 +149,13 @@ def read_yaml(path: Path) -> dict[str, Any]:
     # The import is slow, and only robots with controllers need it.
     import yaml
 
-    origin = Origin(file=str(path))
     try:
-        text = yaml_text.read(path)
+        written = written_in(path)
+        text = yaml_text.read(path) if written is None else written
         ros2 = "ros__parameters" in text
         loader = (yaml_text.loader() if ros2 else yaml_text.rosparam_loader())(text)
         node = loader.get_single_node()
-        if node is not None and ros2:
+        if node is not None and (ros2 or written is not None):
             yaml_text.as_ros2(node)
         content = loader.construct_document(node) if node is not None else None
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
@@ -163,7 +164,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
     if content is None:
         return {}
     if not isinstance(content, dict):
-        raise _unreadable("the file is not a mapping of parameters", origin)
+        raise _unreadable("the file is not a mapping of parameters", Origin(file=str(path)))
     return content
 
 

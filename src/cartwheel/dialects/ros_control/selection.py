@@ -82,8 +82,9 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     folder = root_of(file)
     launches = () if folder is None else launches_near(folder, package_path)
     use = chosen(file, launches)
-    if not suggested(robot):
-        starter = _starter(file, use, launches)
+    starter = _starter(file, use, launches)
+    loaded = () if starter is None else starter.controllers
+    if not suggested(robot) and not suggested(robot, among=loaded):
         problems = (*_undefined(robot, starter), *_only_loaded(starter))
         idle = () if starter is None else starter.loaded
         return Selection(files=(), names=(), idle=idle, problems=problems)

@@ -28,6 +28,8 @@ def controllers_file(subject: Subject) -> Iterator[Diagnostic]:
 def repeated_parameters(subject: Subject) -> Iterator[Diagnostic]:
     files = {file.path: file for _, file in subject.control}
     for file in files.values():
+        if file.path.suffix not in (".yaml", ".yml"):
+            continue  # the elements of a launch file are merged
         for key, last in repeated_keys(file.root):
             line = last.start_mark.line + 1
             yield devices_codes.CONTROLLER_PARAMETER_REPEATED.diagnostic(
