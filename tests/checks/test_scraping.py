@@ -3,7 +3,7 @@
 import pytest
 
 import cartwheel
-from cartwheel.codes.robot import BODY_ON_GROUND
+from cartwheel.codes.robot import BODY_ON_GROUND, WHEELS_OFF_GROUND
 
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'
 WHEELS = ("front_left", "front_right", "back_left", "back_right")
@@ -47,3 +47,21 @@ def test_a_body_between_wheels_without_sides_scrapes(tmp_path, drive, height, sc
     path.write_text(robot(height, drive))
     found = [each for each in cartwheel.check(path).findings if each.code is BODY_ON_GROUND]
     assert [each.values["link"] for each in found] == (["base"] if scrapes else [])
+
+
+SIDES = """<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">
+  <left_joint>front_left_joint</left_joint><right_joint>front_right_joint</right_joint>
+  <wheel_separation>0.36</wheel_separation><wheel_diameter>0.1</wheel_diameter></plugin></gazebo>"""
+CASTER = f"""<link name="caster">{INERTIAL}<collision><geometry><sphere radius="0.02"/></geometry>
+  </collision></link><joint name="c" type="fixed"><parent link="base"/><child link="caster"/>
+  <origin xyz="-0.15 0 {{height}}"/></joint>"""
+
+
+@pytest.mark.parametrize(("height", "code"), [(-0.03, BODY_ON_GROUND), (-0.055, WHEELS_OFF_GROUND)])
+def test_a_body_beside_wheels_that_a_caster_raises_does_not_brake_them(tmp_path, height, code):
+    text = robot(0.0, CASTER.format(height=height) + SIDES)
+    path = tmp_path / "robot.urdf"
+    path.write_text(text)
+    codes = {BODY_ON_GROUND, WHEELS_OFF_GROUND}
+    found = {each.code for each in cartwheel.check(path).findings if each.code in codes}
+    assert found == {code}

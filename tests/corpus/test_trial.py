@@ -482,6 +482,38 @@ def test_what_is_top_heavy_tips(tried):
     assert (fault.test, fault.code) == ("stand", UNBALANCED)
 
 
+LIDAR = (
+    '<link name="lidar"><collision><geometry><mesh filename="package://bot/lidar.stl"/></geometry>'
+    '</collision></link><joint name="l" type="fixed"><parent link="base"/><child link="lidar"/>'
+    '<origin xyz="0 0 {height}"/></joint>'
+)
+
+
+@pytest.mark.parametrize(("height", "code"), [(0.2, UNBALANCED), (-0.1, FILE_MISSING)])
+def test_a_missing_mesh_above_a_robot_is_no_reason_why_it_tips(tried, height, code):
+    frame = '<link name="frame"/><joint name="f" type="continuous"><parent link="base"/>'
+    frame += '<child link="frame"/></joint>'
+    body = BOX.format(name="base", at="0.2 0 0", size="0.1 0.1 0.3")
+    (fault,) = tried(body, LIDAR.format(height=height), frame).faults
+    assert (fault.test, fault.code) == ("stand", code)
+
+
+LEG = """<link name="leg"><collision><origin xyz="0 0 -0.3"/><geometry><box size="0.4 0.4 0.05"/>
+  </geometry></collision></link>
+<joint name="hip" type="revolute"><parent link="base"/><child link="leg"/><origin xyz="0 0 -0.05"/>
+  <axis xyz="0 1 0"/><limit lower="-1.5" upper="1.5" effort="9" velocity="3"/></joint>
+<transmission name="t"><type>transmission_interface/SimpleTransmission</type><joint name="hip">
+  <hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface></joint>
+  <actuator name="m"/></transmission>
+<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>"""
+
+
+def test_legs_without_controllers_are_the_reason_why_a_robot_falls(tried):
+    verdict = tried(BOX.format(name="base", at="0.08 0 0", size="0.3 0.3 0.1"), LEG)
+    reasons = {fault.test: fault.code for fault in verdict.faults}
+    assert reasons == dict.fromkeys(("controller", "stand"), CONTROLLERS_NOT_FOUND)
+
+
 def test_an_arm_whose_limits_exclude_zero_is_balanced_where_it_starts(tried):
     # The weight is above the base at 0, and beside it at the lower limit.
     upper = ARM[ARM.index('<link name="upper">') : ARM.index('<joint name="stand"')]

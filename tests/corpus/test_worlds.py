@@ -1,6 +1,7 @@
 """Robots that are written in worlds."""
 
 from tests.devices.drives.carts import cart_sdf
+from tests.dialects.ros_control.arms import ros2_joint, ros2_system
 
 from cartwheel.codes.robot import WHEEL_SEPARATION_MISMATCH
 from cartwheel.corpus import survey, try_robot
@@ -10,6 +11,22 @@ PLUGIN = """<plugin name="drive" filename="{file}"><topic>/{name}/cmd_vel</topic
   <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>
   <wheel_separation>{apart}</wheel_separation><wheel_radius>0.1</wheel_radius></plugin>"""
 CRATE = '<model name="crate"><link name="l"/><plugin name="p" filename="{}"/></model>'
+
+CONTROLLERS = """
+controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    {left_wheel_names: [left_joint], right_wheel_names: [right_joint],
+     wheel_separation: 0.5, wheel_radius: 0.1}
+"""
+LISTED = f"""<robot name="cart"><link name="base"/>
+  {ros2_system(*(ros2_joint(f"{side}_joint", "velocity") for side in ("left", "right")))}
+  <link name="left"/><link name="right"/>
+  <joint name="left_joint" type="continuous"><parent link="base"/><child link="left"/></joint>
+  <joint name="right_joint" type="continuous"><parent link="base"/><child link="right"/></joint>
+</robot>"""
 
 
 def cart(name, *, apart=0.3, file="gz-sim-diff-drive-system", static=False):
@@ -90,3 +107,20 @@ def test_an_unknown_model_is_a_fault(tmp_path):
     (fault,) = verdict.faults
     assert fault.test == "load"
     assert fault.reason.values["meant"] == "good"
+
+
+def test_a_finding_in_the_controller_file_of_a_model_explains_its_failure(tmp_path):
+    """The controller file is stated with the path of another computer."""
+    (tmp_path / "package.xml").write_text("<package><name>yard</name></package>")
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config/drive.yaml").write_text(CONTROLLERS)
+    control = """<plugin name="c" filename="libgazebo_ros2_control.so"><parameters>
+      /home/me/ws/install/yard/share/yard/config/drive.yaml</parameters></plugin>"""
+    text = cart("cart", file="none.so")
+    start, end = text.index("<plugin"), text.index("</plugin>") + len("</plugin>")
+    file = world(tmp_path, text[:start] + control + text[end:])
+    (tmp_path / "cart.urdf").write_text(LISTED)
+    verdict = try_robot(file, model="cart", standing=1.0)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code) == ("turn", WHEEL_SEPARATION_MISMATCH)
+    assert fault.reason.origin.file == str(tmp_path / "config/drive.yaml")

@@ -10,7 +10,7 @@ from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
 from cartwheel.corpus.faults import Fault, Test, most_severe
 from cartwheel.corpus.movers import is_known, managers, moving_plugins
 from cartwheel.corpus.verdict import Stand, Verdict
-from cartwheel.description.model import PluginTag, RobotDescription
+from cartwheel.description.model import Joint, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Code, Diagnostic
 
@@ -47,6 +47,8 @@ _STANDING = frozenset(
         robot.JOINTS_UNDRIVEN,
     }
 )
+_ABSENT = frozenset({files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREADABLE})
+"""Reasons why a shape is missing."""
 _FALLEN = 1.0
 """m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
 ground."""
@@ -298,8 +300,21 @@ def _cause_of_fall(
         if bottomless is not None:
             return bottomless
     if idle is not None:
-        reasons = [each for each in reasons if each.code is not robot.JOINTS_UNDRIVEN]
+        left_out = {robot.JOINTS_UNDRIVEN}
+        if any(_bends(joint) for joint in description.joints):
+            # Limbs that nothing holds give way; links without an inertia have a mass here.
+            left_out.add(robot.INERTIA_MISSING)
+        reasons = [each for each in reasons if each.code not in left_out]
+    if any(each.code is robot.UNBALANCED for each in reasons):
+        # It is reported only if no missing collision can carry the robot, and is computed with the
+        # masses of all links.
+        reasons = [each for each in reasons if each.code not in _ABSENT | {robot.INERTIA_MISSING}]
     return most_severe(reasons) or idle
+
+
+def _bends(joint: Joint) -> bool:
+    """Whether it is the joint of a limb rather than of a wheel."""
+    return joint.type in ("revolute", "prismatic") and joint.axis.lower is not None
 
 
 def _held_bases(
@@ -331,7 +346,7 @@ def _is_started(controller: str, verdict: Verdict) -> bool:
 
 
 def _explains_fall(each: Diagnostic) -> bool:
-    if each.code in (files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREADABLE):
+    if each.code in _ABSENT:
         return each.values.get("left_out") == "collision"
     return each.code in _STANDING
 

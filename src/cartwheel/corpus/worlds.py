@@ -47,7 +47,8 @@ def worlds_in(folder: Path) -> Iterator[Path]:
 def load_from_world(
     file: Path, model: str, arguments: Mapping[str, str], package_path: Sequence[Path]
 ) -> tuple[RobotDescription, Callable[[Origin | None], bool]]:
-    """A model of a world, and a function that returns whether an origin is in this model.
+    """A model of a world, and a function that returns whether an origin is in this model or in the
+    controller files that it names.
 
     Raises:
         CartwheelError: The world cannot be loaded, or has no such model.
@@ -63,10 +64,18 @@ def load_from_world(
         if each.origin.file == start.file and each.origin.line > start.line
     ]
     end = min(after, default=None)
+    named = {
+        Path(element.text.strip()).name
+        for tag in robot.plugins
+        for element in tag.element.find_all("parameters")
+    }
 
     def is_inside(origin: Origin | None) -> bool:
-        if origin is None or origin.file != start.file:
+        if origin is None:
             return False
+        if origin.file != start.file:
+            # A controller file may be in a folder other than the stated one.
+            return Path(origin.file).name in named
         return start.line <= origin.line and (end is None or origin.line < end)
 
     found = {id(each): each for each in (*robot.diagnostics, *world.diagnostics)}

@@ -36,7 +36,7 @@ _TILTED = 0.1
 def balance(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         held = any(joint.parent == "world" for joint in robot.description.joints)
-        if robot.description.static or held or not robot.is_placed or robot.uncovered:
+        if robot.description.static or held or not robot.is_placed or _lacks_support(robot):
             continue
         poses = starting_poses(robot)
         center = center_of_mass(robot.description, poses)
@@ -64,6 +64,22 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
             )
         else:
             yield from _on_an_axle(robot, None)
+
+
+def _lacks_support(robot: Robot) -> bool:
+    """Whether a missing collision may be one that carries the robot: none in its upper half is."""
+    if not robot.uncovered:
+        return False
+    clouds = [
+        solid.placed(link.pose)[:, 2]
+        for link in robot.description.links
+        for solid in robot.collisions[link.name]
+    ]
+    if robot.cut or not clouds:
+        return True
+    heights = np.concatenate(clouds)
+    middle = (heights.min() + heights.max()) / 2
+    return any(robot.links[name].pose.position[2] < middle for name in robot.uncovered)
 
 
 def _tilted(robot: Robot, rest: Rest) -> Iterator[Diagnostic]:

@@ -54,6 +54,11 @@ def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
         yield from found or _raised_sides(robot)
 
 
+def _are_raised(robot: Robot) -> bool:
+    """Whether something holds driven wheels above the ground."""
+    return any(True for _ in (*_low_links(robot), *_raised_sides(robot)))
+
+
 @rule(robot_codes.BODY_ON_GROUND)
 def body_on_ground(subject: Subject) -> Iterator[Diagnostic]:
     """Flat bodies at the height of the driven wheels, which carry a part of the weight."""
@@ -64,7 +69,7 @@ def body_on_ground(subject: Subject) -> Iterator[Diagnostic]:
         wheels = {name for joint in joints for name in wheel_links(robot, joint)}
         bases = {robot.rigid_root(joint.parent) for joint in joints}
         bottom = Surfaces(robot, wheels).lowest(_UP)
-        if bottom is None or len(bases) != 1:
+        if bottom is None or len(bases) != 1 or _are_raised(robot):
             continue
         for name in robot.rigid_groups.get(bases.pop(), []):
             if (
