@@ -124,3 +124,12 @@ def test_a_finding_in_the_controller_file_of_a_model_explains_its_failure(tmp_pa
     (fault,) = verdict.faults
     assert (fault.test, fault.code) == ("turn", WHEEL_SEPARATION_MISMATCH)
     assert fault.reason.origin.file == str(tmp_path / "config/drive.yaml")
+
+
+def test_a_model_on_a_slope_is_tested_on_level_ground(tmp_path):
+    """Its world, which a program saved, contains uneven ground."""
+    state = """<state world_name="yard"><model name="cart"><pose>3 2 0.3 0.15 -0.2 1</pose></model>
+      </state>"""
+    verdict = try_robot(world(tmp_path, cart("cart"), state), model="cart", standing=2.0)
+    assert verdict.good, verdict.faults
+    assert verdict.stand.tilt < 0.01

@@ -297,3 +297,9 @@ CONTROLLER_PARAMETER_REPEATED = Code(
     "warning",
     "a file of controllers repeats a key",
 )
+HARDWARE_WITHOUT_PLUGIN = Code(
+    "CW490",
+    "hardware-without-plugin",
+    "warning",
+    "no Gazebo plugin runs the hardware of <ros2_control>",
+)

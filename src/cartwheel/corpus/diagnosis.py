@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
-from cartwheel.corpus.faults import Fault, Test, most_severe
+from cartwheel.corpus.fall_causes import cause_of_fall
+from cartwheel.corpus.faults import Fault, Test, coded, most_severe
 from cartwheel.corpus.movers import is_known, managers, moving_plugins
-from cartwheel.corpus.verdict import Stand, Verdict
-from cartwheel.description.model import Joint, PluginTag, RobotDescription
+from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.errors import Code, Diagnostic
+from cartwheel.errors import Diagnostic
 
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
@@ -33,25 +34,6 @@ _BROADCASTER = "Broadcaster"
 """End of the types of ROS 2's controllers that command nothing."""
 _ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
 """Causes for which a controller does not start in ROS either, although another one works."""
-_STANDING = frozenset(
-    {
-        files.FILE_MISSING,
-        files.MESH_UNREADABLE,
-        robot.BASE_WITHOUT_COLLISION,
-        robot.WHEEL_WITHOUT_COLLISION,
-        robot.WHEELS_OFF_GROUND,
-        robot.INERTIA_MISSING,
-        robot.JOINT_LINK_UNKNOWN,
-        robot.UNBALANCED,
-        robot.OVERLAPPING_COLLISIONS,
-        robot.JOINTS_UNDRIVEN,
-    }
-)
-_ABSENT = frozenset({files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREADABLE})
-"""Reasons why a shape is missing."""
-_FALLEN = 1.0
-"""m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
-ground."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
 """Lengths in other units, with which shapes are inside each other or kilometres long."""
 _JOINTS = frozenset(
@@ -85,7 +67,7 @@ def faults(
     if verdict.failure is not None:
         reason = verdict.failure
         if verdict.loaded and reason.code is world.SIMULATION_DIVERGED:
-            reason = _coded(findings(), _DIVERGING) or reason
+            reason = coded(findings(), _DIVERGING) or reason
         yield Fault(test="simulate" if verdict.loaded else "load", reason=reason)
     if not verdict.loaded:
         return
@@ -94,10 +76,23 @@ def faults(
     missing = {
         fault.subject: fault for fault in reversed([*_missing(verdict, description, held=held)])
     }
+    missing |= dict(_unmanaged(description, findings))
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights
     yield from _measured(verdict, description, findings, None if moved else idle)
+
+
+def _unmanaged(
+    description: RobotDescription, findings: Callable[[], Sequence[Diagnostic]]
+) -> Iterator[tuple[str, Fault]]:
+    """Hardware for Gazebo that no plugin runs, with its name."""
+    if not description.ros2_control or managers(description):
+        return
+    for each in findings():
+        if each.code is devices.HARDWARE_WITHOUT_PLUGIN:
+            name = str(each.values["name"])
+            yield name, Fault(test="controller", subject=name, reason=each)
 
 
 def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> Iterator[Fault]:
@@ -136,7 +131,7 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
             reason = refused[name]
             if reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number:
                 # The part that contains the joint may be in a file that is absent.
-                reason = _coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
+                reason = coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
             yield Fault(test="controller", subject=name, reason=reason)
         unread = next((each for each in verdict.observed if _contains(each, name)), None)
         if unread is not None:
@@ -147,7 +142,7 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
         # The simulation stopped before the controllers were tested.
         return
     wheels = any(joint.turns for joint in description.joints)
-    lost = _coded(said, frozenset({files.INCLUDE_ABSENT}))
+    lost = coded(said, frozenset({files.INCLUDE_ABSENT}))
     if lost is not None and wheels and not verdict.movers:
         yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)
     replaced = [
@@ -225,10 +220,10 @@ def _measured(
     said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
     if verdict.stand is not None and not verdict.stands:
-        fallen = _cause_of_fall(verdict.stand, description, (*said, *findings()), idle)
+        fallen = cause_of_fall(verdict.stand, description, (*said, *findings()), idle)
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:
-        reason = _coded(said, frozenset({world.OPENGL_MISSING}))
+        reason = coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
     for subject, reason in _held_bases(verdict, description, findings):
         yield Fault(test="drive", subject=subject, reason=reason)
@@ -284,39 +279,6 @@ def _explaining(
     return [each for each in found if hindered or each.code is not running.JOINT_DRIVEN_TWICE]
 
 
-def _cause_of_fall(
-    stand: Stand,
-    description: RobotDescription,
-    found: Sequence[Diagnostic],
-    idle: Diagnostic | None,
-) -> Diagnostic | None:
-    """Why a robot does not stand; see `_measured` for `idle`."""
-    lost = next((each for each in found if _is_body_lost(each, description)), None)
-    if lost is not None:
-        return lost
-    reasons = [each for each in found if _explains_fall(each)]
-    if stand.sunk > _FALLEN * max(1.0, stand.size):
-        bottomless = _coded(reasons, frozenset({robot.BASE_WITHOUT_COLLISION}))
-        if bottomless is not None:
-            return bottomless
-    if idle is not None:
-        left_out = {robot.JOINTS_UNDRIVEN}
-        if any(_bends(joint) for joint in description.joints):
-            # Limbs that nothing holds give way; links without an inertia have a mass here.
-            left_out.add(robot.INERTIA_MISSING)
-        reasons = [each for each in reasons if each.code not in left_out]
-    if any(each.code is robot.UNBALANCED for each in reasons):
-        # It is reported only if no missing collision can carry the robot, and is computed with the
-        # masses of all links.
-        reasons = [each for each in reasons if each.code not in _ABSENT | {robot.INERTIA_MISSING}]
-    return most_severe(reasons) or idle
-
-
-def _bends(joint: Joint) -> bool:
-    """Whether it is the joint of a limb rather than of a wheel."""
-    return joint.type in ("revolute", "prismatic") and joint.axis.lower is not None
-
-
 def _held_bases(
     verdict: Verdict,
     description: RobotDescription,
@@ -342,22 +304,6 @@ def _is_started(controller: str, verdict: Verdict) -> bool:
         not verdict.spawned
         or controller not in verdict.controllers
         or (controller in verdict.spawned)
-    )
-
-
-def _explains_fall(each: Diagnostic) -> bool:
-    if each.code in _ABSENT:
-        return each.values.get("left_out") == "collision"
-    return each.code in _STANDING
-
-
-def _is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
-    """Whether the root link is empty because the included file that defines it is absent."""
-    held = {joint.child for joint in description.joints}
-    return (
-        each.code is files.LINK_RECONNECTED
-        and not each.values.get("parent")
-        and each.values.get("link") not in held
     )
 
 
@@ -387,7 +333,3 @@ def _is_heavy(each: Diagnostic, link: str) -> bool:
         and isinstance(ratio, float)
         and ratio > _HEAVY
     )
-
-
-def _coded(found: Iterable[Diagnostic], codes: frozenset[Code]) -> Diagnostic | None:
-    return most_severe(each for each in found if each.code in codes)

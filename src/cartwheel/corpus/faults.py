@@ -88,3 +88,8 @@ def most_severe(found: Iterable[Diagnostic]) -> Diagnostic | None:
     """The first of the most severe diagnostics."""
     order = {"error": 0, "warning": 1, "info": 2}
     return min(found, key=lambda each: order[each.severity], default=None)
+
+
+def coded(found: Iterable[Diagnostic], codes: frozenset[Code]) -> Diagnostic | None:
+    """The most severe diagnostic with one of these codes."""
+    return most_severe(each for each in found if each.code in codes)

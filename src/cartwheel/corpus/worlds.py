@@ -15,12 +15,15 @@ from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.loading import open_description
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import DescriptionError, Origin, UnknownNameError
+from cartwheel.geometry import Pose
 
 _SUFFIXES = (".world", ".sdf", ".xacro")
 _MOST = 50
 """Maximum number of robots in one world."""
 _FIRST = re.compile(r"<(world|model|robot)[\s>]")
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_STEEPEST = 0.6
+"""Largest roll or pitch of a model because of the ground in its world, rad."""
 
 
 def robots_in_worlds(folder: Path, package_path: Sequence[Path] = ()) -> Iterator[tuple[Path, str]]:
@@ -80,7 +83,15 @@ def load_from_world(
 
     found = {id(each): each for each in (*robot.diagnostics, *world.diagnostics)}
     inside = tuple(each for each in found.values() if is_inside(each.origin))
-    return replace(robot, diagnostics=inside), is_inside
+    return replace(robot, pose=_level(robot.pose), diagnostics=inside), is_inside
+
+
+def _level(pose: Pose) -> Pose:
+    """The pose on level ground of a model that stands on a slope in its world."""
+    roll, pitch, yaw = pose.rpy
+    if max(abs(roll), abs(pitch)) > _STEEPEST:
+        return pose
+    return Pose.from_xyz_rpy(pose.position, (0.0, 0.0, yaw))
 
 
 def text_of(path: Path) -> str:

@@ -17,12 +17,13 @@ from cartwheel.simulation.limits import FARTHEST
 
 COMMANDS = ("position", "velocity", "effort")
 """Supported command interfaces of a joint."""
-SYSTEMS = (
-    "gazebo_ros2_control/GazeboSystem",
-    "gz_ros2_control/GazeboSimSystem",
-    "ign_ros2_control/IgnitionSystem",
-)
-"""Hardware plugins of ros2_control that are simulated."""
+MANAGERS = {
+    "gazebo_ros2_control/GazeboSystem": "libgazebo_ros2_control.so",
+    "gz_ros2_control/GazeboSimSystem": "gz_ros2_control-system",
+    "ign_ros2_control/IgnitionSystem": "ign_ros2_control-system",
+}
+"""Hardware plugins of ros2_control that are simulated, and the Gazebo plugins that run them."""
+SYSTEMS = tuple(MANAGERS)
 _HARDWARE = {
     "PositionJointInterface": "position",
     "VelocityJointInterface": "velocity",

@@ -28,6 +28,8 @@ _TOUCHES = 0.03
 _MARGIN = 0.01
 """Distance outside the support that is tolerated, relative to the robot's size."""
 _DIRECTIONS = 64
+_HIGH = 0.75
+"""Height of links that do not touch the ground, relative to that of the robot."""
 _TILTED = 0.1
 """Smallest angle of a robot that is reported to be tilted, rad."""
 
@@ -67,7 +69,7 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _lacks_support(robot: Robot) -> bool:
-    """Whether a missing collision may be one that carries the robot: none in its upper half is."""
+    """Whether a missing collision may be one that carries the robot: none near its top is."""
     if not robot.uncovered:
         return False
     clouds = [
@@ -78,8 +80,8 @@ def _lacks_support(robot: Robot) -> bool:
     if robot.cut or not clouds:
         return True
     heights = np.concatenate(clouds)
-    middle = (heights.min() + heights.max()) / 2
-    return any(robot.links[name].pose.position[2] < middle for name in robot.uncovered)
+    high = heights.min() + _HIGH * np.ptp(heights)
+    return any(robot.links[name].pose.position[2] < high for name in robot.uncovered)
 
 
 def _tilted(robot: Robot, rest: Rest) -> Iterator[Diagnostic]:
