@@ -1,4 +1,4 @@
-"""Proportional gains that do not overcome the friction of a joint."""
+"""Proportional gains that do not overcome the friction of a joint, or do not hold its load."""
 
 import pytest
 from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
@@ -43,3 +43,26 @@ def test_a_gain_that_does_not_overcome_friction_is_reported(tmp_path, p, i, repo
     # An integral moves the joint, but may let it oscillate.
     assert i or codes == [CONTROLLER_GAIN_TOO_LOW] * reported
     assert (CONTROLLER_GAIN_TOO_LOW in codes) == reported
+
+
+@pytest.mark.parametrize(("p", "axis", "reported"), [
+    (10.0, "0 0 1", True), (10.0, "0 0 -1", True), (10.0, "1 0 0", False), (90.0, "0 0 1", False),
+])  # fmt: skip
+@pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
+def test_a_gain_that_does_not_hold_a_weight_within_the_limits_is_reported(
+    tmp_path, p, axis, reported, gz
+):
+    """A weight of 2 kg on a slide of 1 m: a gain of 20 N/m would just hold it at its end."""
+    limit = 'lower="-0.5" upper="0.5" effort="100" velocity="10"'
+    slide = beam("beam", "world", axis=axis, limit=limit, kind="prismatic")
+    slide = slide.replace("</joint>", '<dynamics damping="5"/></joint>', 1)
+    path = tmp_path / "slide.urdf"
+    plugin = GZ.format(p=p, i=0.0) if gz else ROS1
+    path.write_text(robot(slide + transmission("beam_joint", "Effort"), plugin))
+    (tmp_path / "move.yaml").write_text(FILE.format(p=p, i=0.0))
+    files = () if gz else (tmp_path / "move.yaml",)
+    findings = check(path, controller_files=files).findings
+    found = [each for each in findings if each.code is CONTROLLER_GAIN_TOO_LOW]
+    assert [each.values["joint"] for each in found] == ["beam_joint"] * reported
+    codes = [each.code for each in try_robot(path, standing=1.0, controllers=files).faults]
+    assert codes == [CONTROLLER_GAIN_TOO_LOW] * reported

@@ -283,7 +283,7 @@ CONTROLLER_GAIN_TOO_LOW = Code(
     "CW487",
     "controller-gain-too-low",
     "warning",
-    "a proportional gain is too low to overcome the friction of its joint",
+    "a proportional gain is too low for the friction of its joint or the weight on it",
 )
 CONTROLLER_ONLY_LOADED = Code(
     "CW488",

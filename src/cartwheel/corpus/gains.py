@@ -7,7 +7,8 @@ import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from cartwheel.checks.gains import gain_too_low
+from cartwheel.checks.gains import cannot_hold, gain_too_low
+from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices
 from cartwheel.corpus import commands, motion
 from cartwheel.description.model import RobotDescription
@@ -63,7 +64,7 @@ def too_weak(
     gains: Mapping[str, float],
     joints: Iterable[str],
 ) -> Iterator[Diagnostic]:
-    """Joints whose proportional gain is too low for their friction.
+    """Joints whose proportional gain is too low for their friction or the weight on them.
 
     Args:
         robot: The description.
@@ -84,7 +85,9 @@ def too_weak(
     for name in joints:
         joint = robot.joint(name)
         if joint is not None and name in gains:
-            yield from gain_too_low(joint, gains[name], places.get(name, joint.origin))
+            origin = places.get(name, joint.origin)
+            yield from gain_too_low(joint, gains[name], origin)
+            yield from cannot_hold(Robot(robot, None), joint, gains[name], origin)
 
 
 def undamped(

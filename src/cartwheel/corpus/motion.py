@@ -7,6 +7,7 @@ import time
 from collections.abc import Mapping, Sequence
 
 from cartwheel.api import Model, World
+from cartwheel.checks.gains import span
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.loads import held_by, resistance
@@ -126,9 +127,12 @@ def _reached(
             target=target,
             reached=model.joint(joint.name),
             angular=joint.type != "prismatic",
-            sag=max(
-                slope * _sag(world, model, name, gains.get(name, 0.0), held[name])
-                for name, slope in slopes(joint.name, held, coupled).items()
+            sag=_explained(
+                joint,
+                max(
+                    slope * _sag(world, model, name, gains.get(name, 0.0), held[name])
+                    for name, slope in slopes(joint.name, held, coupled).items()
+                ),
             ),
         )
         for taker, joint, target in sent
@@ -160,6 +164,12 @@ def _sag(world: World, model: Model, joint: str, gain: float, held: float) -> fl
     what its motor `held` before the command, N m or N.
     """
     return max(resistance(world, model, joint)[0], held) / gain if gain > 0 else 0.0
+
+
+def _explained(joint: Joint, sag: float) -> float:
+    """The error that gains explain: none if a joint sags to its limit wherever it is commanded."""
+    way = span(joint)
+    return sag if way is None or sag <= way else 0.0
 
 
 def positions(world: World, model: Model) -> dict[str, float]:

@@ -16,7 +16,7 @@ from cartwheel.checks.controller_claims import (
     used_controllers,
 )
 from cartwheel.checks.controller_files import Controller, Value
-from cartwheel.checks.gains import SLOW, gain_too_low
+from cartwheel.checks.gains import SLOW, cannot_hold, gain_too_low
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -98,7 +98,9 @@ def gains_too_low(subject: Subject) -> Iterator[Diagnostic]:
                 origin = tag.origin if place is None else place.origin
                 for name in given.joints:
                     if name.strip() in robot.joints:
-                        yield from gain_too_low(robot.joints[name.strip()], given.p, origin)
+                        joint = robot.joints[name.strip()]
+                        yield from gain_too_low(joint, given.p, origin)
+                        yield from cannot_hold(robot, joint, given.p, origin)
 
 
 def _of_controller(robot: Robot, controller: Controller) -> Iterator[Diagnostic]:
@@ -115,9 +117,9 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Diagnostic]
             integral = 0.0 if ros1 and not clamped else _number(controller, f"{path}/i")
             if value is None or value.number is None or integral * SLOW >= value.number:
                 continue
-            yield from gain_too_low(
-                robot.joints[claim.joint], value.number, value.origin, mark=value.text
-            )
+            joint, gain, origin = robot.joints[claim.joint], value.number, value.origin
+            yield from gain_too_low(joint, gain, origin, mark=value.text)
+            yield from cannot_hold(robot, joint, gain, origin, mark=value.text)
 
 
 def _number(controller: Controller, path: str) -> float:
