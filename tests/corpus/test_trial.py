@@ -1159,7 +1159,13 @@ def test_arguments_and_controllers_come_from_the_launch_files_of_the_robot(tmp_p
     assert (verdict.name, verdict.controllers) == ("righty", ("b",))
 
 
-def test_a_gripper_in_an_absent_file_is_the_reason_why_its_controller_does_not_start(tmp_path):
+@pytest.mark.parametrize(("joint", "code"), [
+    ("f", INCLUDE_ABSENT), ("left_shoulder", CONTROLLER_NOT_STARTED),
+])  # fmt: skip
+def test_a_gripper_in_an_absent_file_is_the_reason_why_its_controller_does_not_start(
+    tmp_path, joint, code
+):
+    """Unless the robot has the joint, but without the prefix."""
     spawner = '<node name="s" pkg="controller_manager" type="spawner" args="a hand"/>'
     group = "\n  type: position_controllers/JointGroupPositionController\n  joints: [{joint}]\n"
     files = {
@@ -1168,7 +1174,10 @@ def test_a_gripper_in_an_absent_file_is_the_reason_why_its_controller_does_not_s
         + '<xacro:include filename="$(find far_gripper)/gripper.xacro"/>'
         + ARM.format(kind="Position")
         + "</robot>",
-        "config/a.yaml": "a:" + group.format(joint="shoulder") + "hand:" + group.format(joint="f"),
+        "config/a.yaml": "a:"
+        + group.format(joint="shoulder")
+        + "hand:"
+        + group.format(joint=joint),
         "launch/a.launch": '<launch><param name="robot_description" '
         'command="xacro $(find arm)/arm.xacro"/><rosparam file="$(find arm)/config/a.yaml" '
         f'command="load"/>{spawner}</launch>',
@@ -1179,7 +1188,7 @@ def test_a_gripper_in_an_absent_file_is_the_reason_why_its_controller_does_not_s
     verdict = try_robot(tmp_path / "arm.xacro", standing=1.0)
     assert verdict.controllers == ("a",)
     (fault,) = verdict.faults
-    assert (fault.test, fault.subject, fault.code) == ("controller", "hand", INCLUDE_ABSENT)
+    assert (fault.test, fault.subject, fault.code) == ("controller", "hand", code)
 
 
 def test_a_controller_of_the_file_in_the_tag_must_start_if_a_launch_file_starts_it(tmp_path):

@@ -76,7 +76,7 @@ def faults(
     missing = {
         fault.subject: fault for fault in reversed([*_missing(verdict, description, held=held)])
     }
-    missing |= dict(_unmanaged(description, findings))
+    missing |= dict(_unmanaged(verdict, description, findings))
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights
@@ -84,10 +84,12 @@ def faults(
 
 
 def _unmanaged(
-    description: RobotDescription, findings: Callable[[], Sequence[Diagnostic]]
+    verdict: Verdict,
+    description: RobotDescription,
+    findings: Callable[[], Sequence[Diagnostic]],
 ) -> Iterator[tuple[str, Fault]]:
-    """Hardware for Gazebo that no plugin runs, with its name."""
-    if not description.ros2_control or managers(description):
+    """Hardware for Gazebo of a robot that nothing moves because no plugin runs it, by name."""
+    if not description.ros2_control or verdict.movers:
         return
     for each in findings():
         if each.code is devices.HARDWARE_WITHOUT_PLUGIN:
@@ -129,7 +131,8 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
             continue
         if name in refused and not _broadcasts(refused[name]):
             reason = refused[name]
-            if reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number:
+            unknown = reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number
+            if unknown and not _is_prefixed(reason):
                 # The part that contains the joint may be in a file that is absent.
                 reason = coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
             yield Fault(test="controller", subject=name, reason=reason)
@@ -170,6 +173,14 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
             reason = _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _is_prefixed(refused: Diagnostic) -> bool:
+    """Whether the unknown joint of a controller has a prefix that the robot's joint has not, or
+    the other way round.
+    """
+    name, meant = (str(refused.values.get(key) or "") for key in ("name", "meant"))
+    return bool(name and meant) and (name.endswith(meant) or meant.endswith(name))
 
 
 def _uncommanded(verdict: Verdict, tag: PluginTag) -> Diagnostic:
