@@ -454,6 +454,13 @@ def test_what_is_deprecated_and_works_is_a_note(folder):
     assert reported.values["name"] == "load_yaml"
 
 
+def test_the_empty_name_of_a_yaml_file_is_an_error(folder):
+    write("robot.xacro", """<xacro:arg name="f" default=""/>\n<a r="${load_yaml('$(arg f)')}"/>""")
+    with pytest.raises(DescriptionError) as caught:
+        expanded()
+    assert caught.value.message == "the name of the YAML file is empty"
+
+
 def test_a_robot_keeps_the_values_of_its_arguments_given_or_not():
     text = (
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>'

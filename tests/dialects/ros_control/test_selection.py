@@ -296,7 +296,8 @@ def test_a_controller_that_only_a_launch_file_names_is_reported(model, tmp_path,
     with cw.World("empty") as world:
         world.spawn(path, controllers="auto")
         (found,) = coded(world, CONTROLLER_UNDEFINED)
-        assert found.values == {"controller": "bad"}
+        assert found.values["controller"] == "bad"
+        assert 'not found: "bad.yaml", "other.yaml"' in found.hint
         assert found.origin.file.endswith("sim.launch")
     verdict = try_robot(path, standing=1.0)
     assert [(each.subject, each.code) for each in verdict.faults] == [("bad", CONTROLLER_UNDEFINED)]

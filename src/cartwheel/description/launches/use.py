@@ -72,6 +72,8 @@ class LaunchUse:
     """Names of those that it loads, but does not start."""
     undecided: frozenset[str] = frozenset()
     """Those of them for which it may be a mistake: it does not state that they are inactive."""
+    absent: tuple[Path, ...] = ()
+    """YAML files that it loads and that do not exist."""
     simulated: bool = False
     """Whether it starts Gazebo or spawns a model."""
     guessed: bool = False
@@ -121,6 +123,8 @@ class Facts:
     """The namespace of the group that is being read."""
     yamls: list[tuple[str, Path]] = field(default_factory=list)
     """Files with parameters of controllers, with the namespaces into which they are loaded."""
+    lost: list[Path] = field(default_factory=list)
+    """Such files that do not exist."""
     spawned: list[tuple[str, str]] = field(default_factory=list)
     """Controllers that are started, with the namespaces of their managers."""
     loaded: list[tuple[str, str]] = field(default_factory=list)
@@ -353,6 +357,8 @@ class Facts:
             if re.fullmatch(r"\w+", name) and _is_single(path):
                 path, space = Path(f"{name}={path}"), space.rpartition("/")[0]
             self.yamls.append((space, path))
+        elif UNKNOWN not in text and path.suffix in (".yaml", ".yml") and path not in self.lost:
+            self.lost.append(path)
 
     def written(self, path: Path, namespace: str) -> None:
         """Adds a launch file that contains parameters of controllers itself."""

@@ -240,6 +240,12 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         return name, (name if forward else None, default or None), text[found.end() :]
 
     def load_yaml(filename: str) -> object:
+        if not str(filename).strip():
+            raise DescriptionError(
+                "the name of the YAML file is empty",
+                code=codes.FILE_UNREADABLE,
+                hint="It may be an argument that a launch file passes.",
+            )
         path = Path(abs_filename_spec(str(filename)))
         lacking = FIND.search(str(filename))
         if path.exists():

@@ -184,13 +184,19 @@ def _undefined(
         with contextlib.suppress(OSError, UnicodeDecodeError):
             text = yaml_text.read(path)
             undefined -= {name for name in undefined if _is_key(name, text)}
+    # Files of other packages are searched in the launch file's own package.
+    lost = ", ".join(f'"{path.name}"' for path in starter.absent)
     for name in starter.spawned:
         if name in undefined:
             yield CONTROLLER_UNDEFINED.diagnostic(
                 f'"{starter.file.name}" starts the controller "{name}", but no file near it '
                 "contains its parameters, so it cannot be loaded",
                 origin=Origin(file=str(starter.file)),
-                values={"controller": name},
+                values={"controller": name, "absent": tuple(map(str, starter.absent))},
+                hint=f"The launch file loads files that were not found: {lost}. They may be in "
+                "packages that are not installed."
+                if lost
+                else "",
             )
 
 
