@@ -284,3 +284,18 @@ def test_bytes_that_are_not_utf_8_are_named():
     assert str(got.value.origin) == "r.urdf:2"
     for encoding, head in (("utf-8", ""), ("latin-1", LATIN)):
         assert xml.parse((head + text).encode(encoding)).children[0].require("name") == "Tür"
+
+
+@pytest.mark.parametrize(
+    ("plugins", "end"),
+    [
+        ("", "ignored"),
+        ("a", 'so plugin "a.so" in it is not loaded'),
+        ("ab", 'so plugins "a.so" and "b.so" in it are not loaded'),
+        ("abcde", 'so plugins "a.so", "b.so", "c.so" and 2 more in it are not loaded'),
+    ],
+)
+def test_plugins_in_an_unread_element_are_named(plugins, end):
+    tags = "".join(f'<plugin filename="{each}.so"/>' for each in plugins)
+    (found,) = unread(xml.parse(f"<model><gazebo><x>{tags}</x></gazebo></model>"))
+    assert found.message.endswith(end)

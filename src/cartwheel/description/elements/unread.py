@@ -9,6 +9,9 @@ from cartwheel.description.elements import numbers
 from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic, Origin, Value
 
+_SHOWN = 3
+"""Number of plugins that a message names."""
+
 
 def unread(
     node: Node, harmless: Mapping[tuple[str, str], str] | None = None
@@ -61,7 +64,24 @@ def unread(
             meant=numbers.likely(child.tag, node._asked_children),
             form="<{}>",
             values=values,
+            lost=_plugins_in(child),
         )
+
+
+def _plugins_in(node: Node) -> str:
+    """The plugins in an element, as the subject of a sentence; empty if there is none."""
+    names, left = [], [node]
+    while left:
+        each = left.pop()
+        left += reversed(each.children)
+        if each.tag == "plugin" and each is not node:
+            name = each.attributes.get("filename") or each.attributes.get("name", "")
+            names.append(f'"{name}"')
+    if len(names) > _SHOWN:
+        names = [*names[:_SHOWN], f"{len(names) - _SHOWN} more"]
+    if len(names) < 2:
+        return f"plugin {names[0]} in it is" if names else ""
+    return f"plugins {', '.join(names[:-1])} and {names[-1]} in it are"
 
 
 def _ignored(
@@ -72,14 +92,25 @@ def _ignored(
     meant: str | None,
     form: str,
     values: Mapping[str, Value],
+    lost: str = "",
 ) -> Diagnostic:
-    """The diagnostic for a part without effect; if `reason` is set, the part is known."""
+    """The diagnostic for a part without effect.
+
+    Args:
+        what: The part.
+        origin: Its place.
+        reason: Why it has no effect; None if it is unknown.
+        meant: The name that it should probably have.
+        form: How this name is written.
+        values: For programs.
+        lost: Plugins in the part, with a verb.
+    """
     if reason is not None:
         return codes.TAG_IGNORED.diagnostic(
             f"{what} has no effect: {reason}", origin=origin, severity="info", values=values
         )
     return codes.TAG_IGNORED.diagnostic(
-        f"{what} is unknown and ignored",
+        f"{what} is unknown and ignored" + (f", so {lost} not loaded" if lost else ""),
         origin=origin,
         hint=f"Did you mean {form.format(meant)}?" if meant else "",
         values={**values, "meant": meant or ""},
