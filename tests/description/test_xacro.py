@@ -458,7 +458,8 @@ def test_the_empty_name_of_a_yaml_file_is_an_error(folder):
     write("robot.xacro", """<xacro:arg name="f" default=""/>\n<a r="${load_yaml('$(arg f)')}"/>""")
     with pytest.raises(DescriptionError) as caught:
         expanded()
-    assert caught.value.message == "the name of the YAML file is empty"
+    assert caught.value.code is files.FILE_UNREADABLE
+    assert caught.value.origin.line == 3
 
 
 def test_a_robot_keeps_the_values_of_its_arguments_given_or_not():

@@ -286,6 +286,7 @@ def test_bytes_that_are_not_utf_8_are_named():
         assert xml.parse((head + text).encode(encoding)).children[0].require("name") == "Tür"
 
 
+@pytest.mark.wording
 @pytest.mark.parametrize(
     ("plugins", "end"),
     [
