@@ -1,8 +1,10 @@
 """Bases that also move sideways."""
 
 import pytest
+import yaml
 from tests.corpus.carts import cart, plugin, written
-from tests.dialects.ros_control.cars import RADIUS, car, four_wheels, rollers
+from tests.dialects.ros_control.arms import ros2_parameters, ros2_plugin
+from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, car, four_wheels, rollers
 
 from cartwheel.codes.robot import WHEEL_DIAMETER_MISMATCH
 from cartwheel.corpus import try_robot
@@ -61,3 +63,29 @@ def test_wheels_that_roll_sideways_do_not_turn_the_frame_of_a_pushed_base(tmp_pa
     (drive,) = try_robot(written(tmp_path, turned, PLANAR), standing=1.0).drives
     assert drive.measured_sideways == pytest.approx(0.2, rel=0.05)
     assert drive.slides
+
+
+@pytest.mark.parametrize("yaw", [1.5707963, -1.5707963, 0.0])
+def test_a_base_that_drives_along_y_moves_to_its_own_left(tmp_path, yaw):
+    """The wheels show the forward direction while it drives forward, but not to the side."""
+    names = ("front_left", "front_right", "rear_left", "rear_right")
+    settings = {
+        "type": "mecanum_drive_controller/MecanumDriveController",
+        **{f"{name}_wheel_command_joint_name": f"{name}_joint" for name in names},
+        "kinematics": {
+            "wheels_radius": RADIUS,
+            "sum_of_robot_center_projection_on_X_Y_axis": (BASE + TRACK) / 2,
+        },
+    }
+    file = tmp_path / "drive.yaml"
+    file.write_text(yaml.safe_dump(ros2_parameters(base=settings)))
+    text = car(four_wheels(), ros2_plugin(file), file.read_text(), rollers())
+    turned = (
+        '<link name="footprint"/><joint name="turned" type="fixed"><parent link="footprint"/>'
+        f'<child link="base_link"/><origin rpy="0 0 {yaw}"/></joint></robot>'
+    )
+    path = tmp_path / "car.urdf"
+    path.write_text(text.replace("</robot>", turned))
+    (drive,) = try_robot(path, standing=1.0).drives
+    assert drive.measured == pytest.approx(0.2, rel=0.05)
+    assert drive.measured_sideways == pytest.approx(0.2, rel=0.05)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
-from cartwheel.corpus.heading import heading
+from cartwheel.corpus.heading import FORWARD, heading
 from cartwheel.corpus.hovering import climbs, drag_errors
 from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.motion import positions
@@ -50,6 +50,10 @@ _RATE = 20.0
 """Rate of commands, Hz."""
 _WITHOUT_WHEELS = (PlanarMove, VelocityControl)
 """Plugins that move a whole model, also sideways."""
+
+
+Facing = tuple[float, float]
+"""A direction in the robot's frame, a unit vector."""
 
 
 class Motion(NamedTuple):
@@ -99,7 +103,7 @@ def drives(
         if not info.drives or (info.subscribers and idle >= set(info.subscribers)):
             continue
         both = Motion(forward if steered else 0.0, 0.0, turn)
-        ahead, turned = (
+        (ahead, facing), (turned, _) = (
             _driven(world, model, robot, info, (command, speed_up))
             for command in (Motion(forward, 0.0, 0.0), both)
         )
@@ -107,7 +111,8 @@ def drives(
         left = 0.0
         if sideways := _takes_sideways(model, robot, info, drive):
             command = Motion(0.0, forward, 0.0)
-            left = _driven(world, model, robot, info, (command, speed_up)).left
+            motion, _ = _driven(world, model, robot, info, (command, speed_up), facing=facing)
+            left = motion.left
         yield Drive(
             topic=info.name,
             commanded=drive.commanded(forward, 0.0)[0] if drive is not None else forward,
@@ -156,11 +161,18 @@ def _is_pushed(model: Model, robot: Robot, topic: TopicInfo) -> bool:
 
 
 def _driven(
-    world: World, model: Model, robot: Robot, topic: TopicInfo, command: tuple[Motion, float]
-) -> Motion:
-    """The velocity after a constant command.
+    world: World,
+    model: Model,
+    robot: Robot,
+    topic: TopicInfo,
+    command: tuple[Motion, float],
+    *,
+    facing: Facing | None = None,
+) -> tuple[Motion, Facing]:
+    """The velocity after a constant command, and the direction that counts as forward.
 
-    `command` contains the commanded velocity and the time to reach it in s.
+    `command` contains the commanded velocity and the time to reach it in s. `facing` is the forward
+    direction, if it is known: wheels that roll sideways do not show it.
     """
     world.reset()
     world.run(0.5)
@@ -170,7 +182,7 @@ def _driven(
         _drive_on(world, topic, Motion(0.0, 0.0, 0.0), _CLIMBING, climb=_CLIMB)
     wanted, speed_up = command
     _drive_on(world, topic, wanted, speed_up)
-    found = _measured(world, model, robot, topic, wanted, flying=flying)
+    found, ahead = _measured(world, model, robot, topic, wanted, facing=facing, flying=flying)
     waited = speed_up + _MEASURED
     # Wheels that slide because of a small load need long to accelerate the base.
     while waited < _LONGEST and not all(
@@ -179,7 +191,7 @@ def _driven(
         if speed
     ):
         before = found
-        found = _measured(world, model, robot, topic, wanted, flying=flying)
+        found, ahead = _measured(world, model, robot, topic, wanted, facing=facing, flying=flying)
         waited += _MEASURED
         changes = [
             (now - then) / speed
@@ -188,13 +200,20 @@ def _driven(
         ]
         if max(changes) < _SETTLED:
             break
-    return found
+    return found, ahead
 
 
 def _measured(
-    world: World, model: Model, robot: Robot, topic: TopicInfo, wanted: Motion, *, flying: bool
-) -> Motion:
-    """The velocity while a command is published."""
+    world: World,
+    model: Model,
+    robot: Robot,
+    topic: TopicInfo,
+    wanted: Motion,
+    *,
+    facing: Facing | None,
+    flying: bool,
+) -> tuple[Motion, Facing]:
+    """The velocity while a command is published, and the forward direction; see `_driven`."""
     before, joints = model.pose, positions(world, model)
     _drive_on(world, topic, wanted, _MEASURED)
     after = model.pose
@@ -204,14 +223,14 @@ def _measured(
     # The pose is that of the root link, whose frame may be turned in the model's frame.
     # Commands to plugins that move the whole model are in this frame, however its wheels turn.
     free = flying or _is_pushed(model, robot, topic)
-    facing = (1.0, 0.0) if free else heading(robot, speeds)
+    facing = facing or (FORWARD if free else heading(robot, speeds))
     ahead = rotate(robot.description.canonical_pose.inverse().orientation, (*facing, 0))
     x, y, _ = rotate(before.orientation, ahead)
     length = math.hypot(x, y) or 1.0
     dx, dy = after.x - before.x, after.y - before.y
     turned = math.remainder(_yaw(after) - _yaw(before), 2 * math.pi)
     along, across = (x * dx + y * dy) / length, (x * dy - y * dx) / length
-    return Motion(along / _MEASURED, across / _MEASURED, turned / _MEASURED)
+    return Motion(along / _MEASURED, across / _MEASURED, turned / _MEASURED), facing
 
 
 def _take_off(world: World, topic: TopicInfo) -> bool:
