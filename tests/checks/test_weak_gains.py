@@ -66,3 +66,13 @@ def test_a_gain_that_does_not_hold_a_weight_within_the_limits_is_reported(
     assert [each.values["joint"] for each in found] == ["beam_joint"] * reported
     codes = [each.code for each in try_robot(path, standing=1.0, controllers=files).faults]
     assert codes == [CONTROLLER_GAIN_TOO_LOW] * reported
+
+
+@pytest.mark.parametrize("upper", [0.0, -0.5])
+def test_a_slide_between_equal_limits_is_held(tmp_path, upper):
+    """Limits of 0 are often placeholders."""
+    limit = f'lower="0" upper="{upper}" effort="100" velocity="10"'
+    slide = beam("beam", "world", axis="0 0 1", limit=limit, kind="prismatic")
+    path = tmp_path / "slide.urdf"
+    path.write_text(robot(slide, GZ.format(p=5.0, i=0.0)))
+    assert CONTROLLER_GAIN_TOO_LOW not in [each.code for each in check(path).findings]

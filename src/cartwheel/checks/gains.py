@@ -77,9 +77,9 @@ def cannot_hold(
 
 
 def span(joint: Joint) -> float | None:
-    """Distance between the limits of a sliding joint, m; None for other joints."""
+    """Distance between the limits of a sliding joint, m; None for joints that do not slide."""
     lower, upper = joint.axis.lower, joint.axis.upper
-    if joint.type != "prismatic" or lower is None or upper is None:
+    if joint.type != "prismatic" or lower is None or upper is None or upper <= lower:
         return None
     return upper - lower
 
