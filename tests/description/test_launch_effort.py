@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from cartwheel.description.launches import effort, launches_near
+from cartwheel.description.launches.written import written_in
 
 _SECONDS = 10.0
 """CPU time. Without limits, each of these files takes minutes, or more memory than there is."""
@@ -131,3 +132,23 @@ x = found()
 """.replace("DOUBLED", "; ".join(["long = long + long"] * 12))
     assert _is_read_to_the_end(package, "a.launch.py", text.replace("VALUE", '"a"'))
     assert not _is_read_to_the_end(package, "a.launch.py", text.replace("VALUE", "[long]"))
+
+
+def test_a_launch_file_is_read_after_a_chained_comparison(package: Path) -> None:
+    robot = 'Command(["xacro ", FindPackageShare("arm"), "/urdf/arm.urdf"])\n'
+    text = f'a = "x" if 1 < 2 < 3 else "y"\nif 1 < 2 < 3:\n    pass\n{robot}'
+    assert _read(package, "a.launch.py", text) == ["arm.urdf"]
+
+
+def test_namespaces_of_parameters_in_a_launch_file_do_not_fill_the_memory(package: Path) -> None:
+    path = package / "a.launch"
+    block = '<rosparam ns="{}">\nmove: {{type: a/BController}}</rosparam>'
+    deep = block.format("a/" * 20_000)
+    path.write_text(f"<launch>{deep}\n{block.format('b/c')}</launch>")
+    text = written_in(path)
+    assert text is not None
+    assert [line.strip() for line in text.splitlines() if line] == [
+        "b:",
+        "c:",
+        "move: {type: a/BController}",
+    ]

@@ -325,7 +325,9 @@ class _Reader:
                     return self.value(each)
             return self.value(last)
         holds = None
-        if isinstance(node, ast.Compare) or isinstance(node.op, ast.Not):
+        if isinstance(node, ast.Compare):
+            holds = self._holds(node) if len(node.ops) == 1 else None
+        elif isinstance(node.op, ast.Not):
             holds = self._holds(node)
         return NOTHING if holds is None else holds
 

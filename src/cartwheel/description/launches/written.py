@@ -16,6 +16,9 @@ _SUFFIXES = (".launch", ".xml")
 _TYPE = re.compile(r"\btype\s*+:\s*+[\"']?+\w++/\w*?Controller\b")
 """The type of a controller."""
 
+_DEEPEST = 20
+"""Maximum number of nested namespaces."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Block:
@@ -76,5 +79,6 @@ def _blocks(node: Node, spaces: tuple[str, ...]) -> Iterator[_Block]:
         elif child.tag == "rosparam" and "file" not in child.attributes:
             named = child.attributes.get("param", "")
             parts = (*inside, *(each for each in named.split("/") if each))
-            if has_controllers(child.text) and not any("$" in each for each in parts):
+            known = len(parts) <= _DEEPEST and not any("$" in each for each in parts)
+            if known and has_controllers(child.text):
                 yield _Block(child.origin.line, parts)
