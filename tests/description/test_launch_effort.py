@@ -152,3 +152,14 @@ def test_namespaces_of_parameters_in_a_launch_file_do_not_fill_the_memory(packag
         "c:",
         "move: {type: a/BController}",
     ]
+
+
+def test_thousands_of_parameters_in_a_launch_file_take_a_limited_time(package: Path) -> None:
+    path = package / "a.launch"
+    many = (f"<rosparam>m{number}: {{type: a/BController}}</rosparam>" for number in range(60_000))
+    path.write_text("<launch>{}</launch>".format("\n".join(many)))
+    begin = time.thread_time()
+    text = written_in(path)
+    assert time.thread_time() - begin < _SECONDS
+    assert text is not None
+    assert len(text.splitlines()) == 60_000

@@ -62,7 +62,13 @@ def _text_in(source: Sequence[str], index: int) -> tuple[int, str]:
 
     The element's own text lacks its indentation.
     """
-    text = "".join(source[index:])
+    last = index
+    rest = source[index].partition("<rosparam")[2]
+    # Not the whole file, because it may have thousands of elements.
+    while "</rosparam" not in rest and last + 1 < len(source):
+        last += 1
+        rest = source[last]
+    text = "".join(source[index : last + 1])
     begin = text.find(">", max(0, text.find("<rosparam"))) + 1
     end = text.find("</rosparam", begin)
     return index + text.count("\n", 0, begin), text[begin : end if end >= 0 else None]
