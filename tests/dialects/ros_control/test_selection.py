@@ -105,6 +105,23 @@ def test_the_launch_file_that_spawns_a_model_names_its_urdf(model):
     assert note.values["file"].endswith("other.urdf")
 
 
+def test_packages_with_robots_of_the_same_name_do_not_hide_the_own_urdf(model):
+    file = model(ROS2, models__arm_v2__arm_dot_urdf=robot(beam("beam", "world") + SYSTEM, ""))
+    other = robot(beam("other", "world") + ros2_system(ros2_joint("other_joint")), "")
+    for number in range(20):
+        package = file.parents[3] / f"a{number}"
+        (package / "launch").mkdir(parents=True)
+        (package / "package.xml").write_text(f"<package><name>a{number}</name></package>")
+        (package / "arm.urdf").write_text(other)
+        (package / "launch/arm.launch").write_text(
+            '<launch><param name="robot_description" '
+            f'textfile="$(find a{number})/arm.urdf"/></launch>'
+        )
+    found = with_published_control(load_robot(file))
+    (system,) = found.ros2_control
+    assert "beam_joint" in {each.attribute("name") for each in system.find_all("joint")}
+
+
 @pytest.mark.parametrize(
     "urdf",
     [

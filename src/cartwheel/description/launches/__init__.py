@@ -7,6 +7,7 @@ from cartwheel.description.launches.search import (
     own_folder,
     own_launches,
     root_of,
+    shared_parts,
     starters,
 )
 from cartwheel.description.launches.start import (
@@ -29,5 +30,6 @@ __all__ = [
     "own_launches",
     "read_launch",
     "root_of",
+    "shared_parts",
     "starters",
 ]

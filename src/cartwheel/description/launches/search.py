@@ -226,7 +226,7 @@ def starters(description: Path, uses: Sequence[LaunchUse]) -> list[LaunchUse]:
     """The launch files without a description that start controllers, nearest first."""
     others = [each for each in uses if each.description is None and each.spawned]
     home = description.absolute()
-    return sorted(others, key=lambda each: (-_common(each.file, home), str(each.file)))
+    return sorted(others, key=lambda each: (-shared_parts(each.file, home), str(each.file)))
 
 
 def _order(use: LaunchUse) -> tuple[bool, int, bool, int, int, str]:
@@ -242,8 +242,9 @@ def _order(use: LaunchUse) -> tuple[bool, int, bool, int, int, str]:
     )
 
 
-def _common(one: Path, other: Path) -> int:
-    return len(os.path.commonpath([one.absolute(), other]))
+def shared_parts(one: Path, other: Path) -> int:
+    """How near two files are: the number of folders that contain both."""
+    return len(Path(os.path.commonpath([one.absolute(), other.absolute()])).parts)
 
 
 def _files(folder: Path, effort: Effort) -> Iterator[Path]:

@@ -25,6 +25,7 @@ from cartwheel.description.launches import (
     controllers_for,
     launches_near,
     root_of,
+    shared_parts,
     starters,
 )
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -46,7 +47,7 @@ _MOST_TEXTS = 2000
 _MOST_FOLDERS = 5000
 """Maximum number of folders that are searched for them."""
 _MOST = 8
-"""Maximum number of descriptions that are read."""
+"""Maximum number of launch files that are considered."""
 _FOLDERS = (".", "urdf", "../urdf")
 """Folders beside an SDF model in which its URDF may be."""
 _ENDS = (".urdf", ".xacro", ".urdf.xacro")
@@ -272,7 +273,7 @@ def with_published_control(
         folder = root_of(file)
         launches = () if folder is None else launches_near(folder, package_path)
     seen: set[Path] = set()
-    for path, arguments in itertools.islice(_candidates(robot, file, launches), _MOST):
+    for path, arguments in _candidates(robot, file, launches):
         if path.resolve() not in seen:
             seen.add(path.resolve())
             found = _with_hardware_of(robot, path, arguments, package_path)
@@ -375,13 +376,19 @@ def _candidates(
         and _SUFFIXES.isdisjoint(each.description.suffixes)
         and not each.guessed
     ]
-    for each in sorted(others, key=lambda each: each.file not in own):
-        if each.description is not None and (
+    named = [
+        (each.description, each)
+        for each in others
+        if each.description is not None
+        and (
             each.file in own
             or robot.name in each.models
             or each.description.name.split(".")[0] == robot.name
-        ):
-            yield each.description, dict(each.arguments)
+        )
+    ]
+    named.sort(key=lambda pair: (pair[1].file not in own, -shared_parts(pair[1].file, file)))
+    for path, each in named[:_MOST]:
+        yield path, dict(each.arguments)
     names = dict.fromkeys((robot.name, file.stem, file.absolute().parent.name))
     for folder, name, end in itertools.product(_FOLDERS, names, _ENDS):
         path = file.parent / folder / f"{name}{end}"
