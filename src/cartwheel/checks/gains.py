@@ -20,16 +20,34 @@ SLOW = 5.0
 
 
 def gain_too_low(
-    joint: Joint, gain: float, origin: Origin | None, **place: Any
+    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
 ) -> Iterator[Diagnostic]:
-    """The finding that a proportional gain does not overcome a joint's friction.
+    """The findings that a proportional gain is too low for a joint's friction, or for the weight on
+    it.
 
     Args:
-        joint: The joint.
+        robot: The robot.
+        joint: One of its joints.
         gain: N m/rad or N/m.
         origin: Where the gain is stated.
-        place: More arguments of the diagnostic.
+        place: More arguments of the diagnostics.
     """
+    yield from _is_stuck(joint, gain, origin, **place)
+    yield from _cannot_hold(robot, joint, gain, origin, **place)
+
+
+def span(joint: Joint) -> float | None:
+    """Distance between the limits of a sliding joint, m; None for joints that do not slide."""
+    lower, upper = joint.axis.lower, joint.axis.upper
+    if joint.type != "prismatic" or lower is None or upper is None or upper <= lower:
+        return None
+    return upper - lower
+
+
+def _is_stuck(
+    joint: Joint, gain: float, origin: Origin | None, **place: Any
+) -> Iterator[Diagnostic]:
+    """The finding that a gain does not overcome a joint's friction."""
     slides = joint.type == "prismatic"
     way = LENGTH if slides else ANGLE
     effort, friction = gain * way, joint.axis.friction
@@ -47,18 +65,10 @@ def gain_too_low(
     )
 
 
-def cannot_hold(
+def _cannot_hold(
     robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
 ) -> Iterator[Diagnostic]:
-    """The finding that a proportional gain does not hold the weight on a sliding joint.
-
-    Args:
-        robot: The robot.
-        joint: One of its joints.
-        gain: N/m.
-        origin: Where the gain is stated.
-        place: More arguments of the diagnostic.
-    """
+    """The finding that a gain does not hold the weight on a sliding joint."""
     way, weight = span(joint), 0.0
     if way is not None and gain > 0.0 and joint.child in robot.placed:
         upward = abs(float(wheel_axis(robot, joint)[2]))
@@ -74,14 +84,6 @@ def cannot_hold(
         hint=f"Use a gain well above {weight / way:.3g} N/m, or an integral gain.",
         **place,
     )
-
-
-def span(joint: Joint) -> float | None:
-    """Distance between the limits of a sliding joint, m; None for joints that do not slide."""
-    lower, upper = joint.axis.lower, joint.axis.upper
-    if joint.type != "prismatic" or lower is None or upper is None or upper <= lower:
-        return None
-    return upper - lower
 
 
 def _mass_on(robot: Robot, joint: Joint) -> float:

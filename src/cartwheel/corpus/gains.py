@@ -7,7 +7,7 @@ import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from cartwheel.checks.gains import cannot_hold, gain_too_low
+from cartwheel.checks.gains import gain_too_low
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices
 from cartwheel.corpus import commands, motion
@@ -82,12 +82,11 @@ def too_weak(
         if plugin_named(tag.filename) is JointPositionController:
             named = {each.text.strip() for each in tag.element.find_all("joint_name")}
             places |= dict.fromkeys(named, tag.origin)
+    described = Robot(robot, None)
     for name in joints:
         joint = robot.joint(name)
         if joint is not None and name in gains:
-            origin = places.get(name, joint.origin)
-            yield from gain_too_low(joint, gains[name], origin)
-            yield from cannot_hold(Robot(robot, None), joint, gains[name], origin)
+            yield from gain_too_low(described, joint, gains[name], places.get(name, joint.origin))
 
 
 def undamped(

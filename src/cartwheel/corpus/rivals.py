@@ -6,10 +6,10 @@ Therefore, the robot is tested again with each of them alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-from cartwheel.checks.robot import Robot
+from cartwheel.checks.robot import Drive, Robot
 from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 from cartwheel.corpus.faults import Test
 from cartwheel.corpus.movers import managers, reports
@@ -67,7 +67,9 @@ def _variants(robot: RobotDescription, joints: set[str]) -> Iterator[RobotDescri
 
     A drive may steer by controllers of other joints.
     """
-    drivers = [tag for tag in robot.plugins if _drives(tag, robot, joints)]
+    drives = Robot(robot, None).drives
+    own = managers(robot)
+    drivers = [tag for tag in robot.plugins if tag in own or _drives(tag, drives, joints)]
     if len(drivers) < 2:
         return
     for alone in drivers[:_MOST]:
@@ -95,14 +97,12 @@ def _changes(test: Test, alone: float, both: float) -> bool:
     return test in _BASES and change >= _STIRS and abs(1.0 + alone) >= 2.0 * abs(1.0 + both)
 
 
-def _drives(tag: PluginTag, robot: RobotDescription, joints: set[str]) -> bool:
-    """Whether a plugin drives one of these joints, or runs controllers that may."""
+def _drives(tag: PluginTag, drives: Sequence[Drive], joints: set[str]) -> bool:
+    """Whether a plugin drives one of these joints."""
     named = {word for each in tag.element.walk() for word in each.text.split()}
-    for drive in Robot(robot, None).drives:
+    for drive in drives:
         if drive.tag is tag:
             named.update(drive.joints)
-    if tag in managers(robot):
-        return True
     return not joints.isdisjoint(named) and not reports(short_name(tag.filename))
 
 

@@ -127,6 +127,9 @@ def stiffen_rotors(model: mujoco.MjModel) -> None:
     impedance = joints.STIFF_IMPEDANCE[0]
     softness = (1.0 - impedance) / impedance
     rate = 2.0 / (impedance * max(joints.STIFF_REFERENCE[0], 2.0 * model.opt.timestep))
+    # Links that are fixed to each other have one number.
+    rigid = model.body_weldid
+    shapes = rigid[model.geom_bodyid]
     for tendon in range(model.ntendon):
         first = model.tendon_adr[tendon]
         joint, rotor = (int(each) for each in model.wrap_objid[first : first + 2])
@@ -136,9 +139,7 @@ def stiffen_rotors(model: mujoco.MjModel) -> None:
         weight = model.body_subtreemass[model.body_rootid[body]] * _GRAVITY
         lever = 1.0
         if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE:
-            # Also the shapes of links that are fixed to the wheel.
-            shapes = model.body_weldid[model.geom_bodyid] == model.body_weldid[body]
-            lever = model.geom_rbound[shapes].max(initial=0.0)
+            lever = model.geom_rbound[shapes == rigid[body]].max(initial=0.0)
         load = min(model.tendon_frictionloss[tendon], weight * lever)
         if load > 0:
             most = _SLIP / lever * rate / (softness * load)

@@ -16,7 +16,7 @@ from cartwheel.checks.controller_claims import (
     used_controllers,
 )
 from cartwheel.checks.controller_files import Controller, Value
-from cartwheel.checks.gains import SLOW, cannot_hold, gain_too_low
+from cartwheel.checks.gains import SLOW, gain_too_low
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -99,8 +99,7 @@ def gains_too_low(subject: Subject) -> Iterator[Diagnostic]:
                 for name in given.joints:
                     if name.strip() in robot.joints:
                         joint = robot.joints[name.strip()]
-                        yield from gain_too_low(joint, given.p, origin)
-                        yield from cannot_hold(robot, joint, given.p, origin)
+                        yield from gain_too_low(robot, joint, given.p, origin)
 
 
 def _of_controller(robot: Robot, controller: Controller) -> Iterator[Diagnostic]:
@@ -118,8 +117,7 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Diagnostic]
             if value is None or value.number is None or integral * SLOW >= value.number:
                 continue
             joint, gain, origin = robot.joints[claim.joint], value.number, value.origin
-            yield from gain_too_low(joint, gain, origin, mark=value.text)
-            yield from cannot_hold(robot, joint, gain, origin, mark=value.text)
+            yield from gain_too_low(robot, joint, gain, origin, mark=value.text)
 
 
 def _number(controller: Controller, path: str) -> float:

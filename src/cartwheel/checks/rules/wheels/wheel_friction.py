@@ -32,12 +32,11 @@ def wheel_friction_oblique(subject: Subject) -> Iterator[Diagnostic]:
     for one in sizes:
         if one.measure != "apart" or id(one.robot) in others:
             continue
-        for name in (*one.first, *one.second):
-            if (id(one.robot), name) not in seen and one.robot.joints[
-                name
-            ].child in one.robot.placed:
-                seen.add((id(one.robot), name))
-                yield from _findings(one.robot, one.robot.joints[name])
+        robot = one.robot
+        for joint in (robot.joints[name] for name in (*one.first, *one.second)):
+            if (id(robot), joint.name) not in seen and joint.child in robot.placed:
+                seen.add((id(robot), joint.name))
+                yield from _findings(robot, joint)
 
 
 def _findings(robot: Robot, joint: Joint) -> Iterator[Diagnostic]:
