@@ -141,3 +141,20 @@ def test_ros2_has_no_angles_in_degrees(tmp_path):
     file = tmp_path / "c.yaml"
     file.write_text("arm: {ros__parameters: {name: deg(90)}}\n")
     assert read_yaml(file) == {"arm": {"ros__parameters": {"name": "deg(90)"}}}
+
+
+def test_a_mapping_that_is_merged_with_itself_does_not_grow_without_bound(tmp_path):
+    path = tmp_path / "c.yaml"
+    path.write_text("a: &x {ros__parameters: {b: 1}}\n" + "a: *x\n" * 60 + "c: *x\n")
+    assert read_yaml(path) == {
+        "a": {"ros__parameters": {"b": 1}},
+        "c": {"ros__parameters": {"b": 1}},
+    }
+
+
+def test_two_mappings_that_are_merged_with_each_other_do_not_grow_without_bound(tmp_path):
+    path = tmp_path / "c.yaml"
+    text = "a: &x {ros__parameters: {b: 1}}\nc: &y {ros__parameters: {d: 2}}\n"
+    path.write_text(text + "a: *y\nc: *x\n" * 60)
+    both = {"ros__parameters": {"b": 1, "d": 2}}
+    assert read_yaml(path) == {"a": both, "c": both}

@@ -159,30 +159,47 @@ def as_ros2(node: Any) -> None:
     Args:
         node: The root of a composed YAML document, which is changed.
     """
-    _as_ros2(node, set())
+    _as_ros2(node, {})
 
 
-def _as_ros2(node: Any, seen: set[int]) -> None:
+def _as_ros2(node: Any, seen: dict[int, Any]) -> None:
+    """As `as_ros2`; `seen` contains the finished nodes by their identity."""
     if id(node) in seen:
         return
-    seen.add(id(node))
+    seen[id(node)] = node
     if node.id == "scalar":
         if node.style is None and _EXPONENT.fullmatch(node.value):
             node.tag = "tag:yaml.org,2002:float"
         return
     if node.id == "mapping":
-        kept: list[tuple[Any, Any]] = []
-        first: dict[str, Any] = {}
-        for key, value in node.value:
-            before = first.get(str(key.value))
-            if before is not None and before.id == value.id == "mapping":
-                before.value = [*before.value, *value.value]
-            else:
-                kept.append((key, value))
-                first[str(key.value)] = value
-        node.value = kept
+        node.value = _merged(node)
     for each in node.value:
         _as_ros2(each[1] if node.id == "mapping" else each, seen)
+
+
+def _merged(mapping: Any) -> list[tuple[Any, Any]]:
+    """The pairs of a mapping, in which mappings with the same key are one.
+
+    Aliases may refer to a mapping several times, and it may be merged with itself. It is therefore
+    copied: otherwise, a file of 200 bytes could double it until the memory is full.
+    """
+    kept: list[tuple[Any, Any]] = []
+    places: dict[str, int] = {}
+    copied: set[int] = set()
+    for key, value in mapping.value:
+        place = places.get(str(key.value))
+        before: Any = None if place is None else kept[place][1]
+        if place is None or not before.id == value.id == "mapping":
+            places[str(key.value)] = len(kept)
+            kept.append((key, value))
+            continue
+        if place not in copied:
+            copied.add(place)
+            marks = before.start_mark, before.end_mark
+            before = type(before)(before.tag, [*before.value], *marks, before.flow_style)
+            kept[place] = kept[place][0], before
+        before.value += value.value
+    return kept
 
 
 def _angle_constructor(factor: float) -> Callable[[Any, Any], float]:
