@@ -11,11 +11,12 @@ import cartwheel as cw
 from benchmarks.carts import Bare
 from benchmarks.figure import Effort, Figure, paired
 from benchmarks.published import command_topic, with_laser
-from cartwheel.batch import Batch, Observations
+from cartwheel.batch import Batch, Observations, PoseOf
 
 _WORLDS, _MANY = 8, 32
 _PERIOD = 0.1
 """s."""
+POSES: Observations = {"pose": PoseOf("robot", "x", "y", "yaw")}
 _SPEED, _TURN = 0.2, 0.3
 """m/s and rad/s."""
 _LEAST = 0.8
@@ -35,12 +36,13 @@ def figures(effort: Effort) -> Iterator[Figure]:
     with built.world() as world:
         act = {command_topic(world): ["linear.x", "angular.z"]}
     group = f"batch of {_WORLDS} {title}s, relative to MuJoCo alone"
-    poses: Observations = {"pose": pose}
+    read: Observations = {"pose": pose}
     odometry: Observations = {"/odom": ["pose.pose.position.x", "twist.twist.linear.x"]}
     for name, obs, goal in (
-        ("poses observed", poses, 0.85),
+        ("poses observed", POSES, 0.85),
+        ("poses observed by a function", read, None),
         ("odometry observed", odometry, None),
-        ("laser of 360 rays at 5 Hz observed", {**poses, "/scan": "ranges"}, 0.6),
+        ("laser of 360 rays at 5 Hz observed", {**POSES, "/scan": "ranges"}, 0.6),
     ):
         with Batch(built, _WORLDS, act=act, obs=obs, period=_PERIOD, workers=0) as batch:
             found = _measured(batch, batch, effort, wall=False)
@@ -50,8 +52,8 @@ def figures(effort: Effort) -> Iterator[Figure]:
         )  # fmt: skip
     for count in (_WORLDS, _MANY):
         with (
-            Batch(built, count, act=act, obs=poses, period=_PERIOD, workers=0) as here,
-            Batch(built, count, act=act, obs=poses, period=_PERIOD, workers=1) as batch,
+            Batch(built, count, act=act, obs=POSES, period=_PERIOD, workers=0) as here,
+            Batch(built, count, act=act, obs=POSES, period=_PERIOD, workers=1) as batch,
         ):
             found = _measured(here, batch, effort, wall=True)
         yield Figure(

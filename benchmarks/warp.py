@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import cartwheel as cw
-from benchmarks.batch import pose
+from benchmarks.batch import POSES
 from benchmarks.figure import Effort, Figure, paired
 from benchmarks.published import command_topic, with_laser
 from cartwheel.batch import Batch, Observations
@@ -42,10 +42,9 @@ def figures(effort: Effort) -> Iterator[Figure]:
     built = cw.build("empty", [{"robot": robot, "name": "robot"}])
     with built.world() as world:
         act = {command_topic(world): ["linear.x", "angular.z"]}
-    poses: Observations = {"pose": pose}
     odometry: Observations = {"/odom": ["pose.pose.position.x", "twist.twist.linear.x"]}
     for count in _ON_GPU if on_gpu else _ON_CPU:
-        for what, obs in (("poses", poses), ("odometry", odometry)):
+        for what, obs in (("poses", POSES), ("odometry", odometry)):
             with (
                 Batch(built, count, act=act, obs=obs, period=_PERIOD, workers=0) as other,
                 Batch(

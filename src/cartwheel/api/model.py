@@ -60,9 +60,7 @@ class Model(MessagingModel):
             CartwheelError: A number is not finite or too large.
         """
         with self._world.lock:
-            simulation = self._world.session.simulation
-            simulation.truth.locate(velocities=False)
-            return simulation.pose(self.name)
+            return Pose(*self._world.session.simulation.truth.place(self.name))
 
     @pose.setter
     def pose(self, pose: Pose) -> None:

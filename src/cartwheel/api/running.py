@@ -174,7 +174,9 @@ class RunningWorld:
 
     def _begin(self) -> int | None:
         """Begins a run, and returns the thread of another one that is in progress."""
-        self._check_open()
+        simulation = self.session.simulation
+        if simulation.closed:
+            self._check_open()
         outer = self.lock.runner
         thread = threading.get_ident()
         if outer == thread:
@@ -196,7 +198,8 @@ class RunningWorld:
                 at_exit.close_at_exit(self, self._end_with_process)
                 self._ends_at_exit = True
                 at_exit.end_thread_if_exiting()
-            self._driver.begin()
+            if simulation.run_state is not RunState.RUNNING:
+                self._driver.begin()
         return outer
 
     def _finish(self, outer: int | None, *, failed: bool) -> None:

@@ -44,7 +44,7 @@ class Turn:
             SimulationError: See `World.run`.
         """
         world = self._world
-        world.lock.acquire()
+        world.lock.__enter__()
         try:
             self._outer = world._begin()
         except BaseException:

@@ -61,7 +61,7 @@ def run_abreast(
                     _run(lanes, _Mujoco() if physics is None else physics)
         finally:
             for lane in lanes:
-                lane.end()
+                lane.close()
     interruption.raise_pressed()
     if errors:
         raise errors[0]
@@ -88,7 +88,7 @@ def _run(lanes: Sequence[Run], physics: Physics) -> None:
             physics.advance(going)
 
 
-class Run:
+class Run(Turn):
     """A run of one world.
 
     Args:
@@ -98,27 +98,32 @@ class Run:
     """
 
     __slots__ = (
-        "_advancing", "_errors", "_failed", "_open", "_target", "_turn", "piece", "simulation",
+        "_advancing",
+        "_errors",
+        "_failed",
+        "_open",
+        "_target",
+        "piece",
+        "simulation",
         "types",
-    )  # fmt: skip
+    )
 
     def __init__(self, world: TimedWorld, duration_ns: int, errors: list[Exception]) -> None:
+        self._world = world
         self._errors = errors
         self.types = world.session.types
         """Finds message types for the plugins of the world."""
         self._failed = self._open = False
-        self.piece = (0, False)
-        """The next steps: the arguments of `Engine.advance`."""
-        self._turn = Turn(world)
-        self._advancing: Iterator[tuple[int, bool]] = iter(())
         try:
-            self.simulation: Simulation = self._turn.begin()
+            self.simulation: Simulation = self.begin()
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self.fail(error)
             return
         self._open = True
-        self._target = self.simulation.time_ns + duration_ns
-        self._advancing = self.simulation.advancing(self._target)
+        self._target = self.simulation.engine.time_ns + duration_ns
+        self.piece: tuple[int, bool]
+        """The next steps: the arguments of `Engine.advance`."""
+        self._advancing: Iterator[tuple[int, bool]] = self.simulation.advancing(self._target)
 
     @property
     def ends(self) -> bool:
@@ -134,7 +139,8 @@ class Run:
             find_with(self.types)
             self.piece = next(self._advancing)
         except StopIteration:
-            self._complete()
+            if self.simulation.engine.time_ns >= self._target:  # otherwise, the run was stopped
+                self._complete()
             return False
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self.fail(error)
@@ -149,21 +155,19 @@ class Run:
             self.fail(error)
 
     def _complete(self) -> None:
-        """Does what is due at the end, unless the run was stopped before."""
-        if self.simulation.time_ns < self._target:
-            return
+        """Does what is due at the end."""
         try:
             self.simulation.complete()
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self.fail(error)
 
-    def end(self) -> None:
+    def close(self) -> None:
         """Ends the run."""
         if not self._open:
             return
         self._open = False
         try:
-            self._turn.end(failed=self._failed)
+            self.end(failed=self._failed)
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self.fail(error)
 

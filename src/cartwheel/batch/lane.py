@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cartwheel.arrays import depth, image, reader
-from cartwheel.batch.plan import AbsoluteVary, Applied, Plan, TopicFields, invalid
+from cartwheel.batch.plan import AbsoluteVary, Applied, Plan, Readable, TopicFields, invalid
 from cartwheel.batch.start import Start
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import CartwheelError
@@ -43,7 +43,8 @@ class Lane:
         self.world: World = built._world(seed=seed, watched=False)
         self._newest: dict[str, Any] = {}
         self._actions: list[Callable[[Sequence[float]], object]] = []
-        self._sources: list[tuple[str, TopicFields | Observer, list[Reader]]] = []
+        self._sources: list[tuple[str, Callable[[], Any]]] = []
+        """Reads each observation."""
         self._start: Start | None = None
         try:
             column = 0
@@ -52,19 +53,7 @@ class Lane:
                 columns = slice(column, column + count)
                 self._actions.append(self._action(name, action, columns))
                 column = columns.stop
-            for name, each in plan.obs.items():
-                readers = []
-                if isinstance(each, TopicFields):
-                    kind = self.world.graph.topic(each.topic).type
-                    readers = [_reader(kind, field) for field in each.fields]
-                    empty = self.world.message_class(kind)()
-                    for read in readers:
-                        if read is not _picture:
-                            read(empty)  # a field that does not exist is an error now
-                    if each.topic not in self._newest:
-                        self._newest[each.topic] = None
-                        self.world.subscribe(each.topic, self._keeper(each.topic))
-                self._sources.append((name, each, readers))
+            self._sources += [(name, self._source(name, each)) for name, each in plan.obs.items()]
             if plan.vary is not None and not isinstance(plan.vary, AbsoluteVary):
                 self._start = Start(self.world, plan.vary)
         except BaseException:
@@ -82,6 +71,49 @@ class Lane:
         kind = graph.topic(name).type
         make = maker(kind, action)
         return lambda values: graph.publish(name, kind, make(values[columns]))
+
+    def _source(self, name: str, observed: TopicFields | Observer | Readable) -> Callable[[], Any]:
+        """A function that reads an observation: an array, or a list of as many numbers each time.
+
+        Array and list are not changed later.
+        """
+        world = self.world
+        if isinstance(observed, TopicFields):
+            return self._fields(observed)
+        if not callable(observed):
+            return observed.reader(world)
+
+        def call() -> Array:
+            try:
+                return _numbers(observed(world))
+            except (TypeError, ValueError, OverflowError) as error:
+                raise invalid(
+                    f'the function of the observation "{name}" must return numbers: {error}', "obs"
+                ) from None
+
+        return call
+
+    def _fields(self, observed: TopicFields) -> Callable[[], Array]:
+        """A function that reads fields of the newest message of a topic."""
+        topic, newest = observed.topic, self._newest
+        kind = self.world.graph.topic(topic).type
+        readers = [_reader(kind, field) for field in observed.fields]
+        empty = self.world.message_class(kind)()
+        for read in readers:
+            if read is not _picture:
+                read(empty)  # a field that does not exist is an error now
+        if topic not in newest:
+            newest[topic] = None
+            self.world.subscribe(topic, self._keeper(topic))
+
+        def read_newest() -> Array:
+            message = newest[topic]
+            if message is None:
+                raise self._no_message(topic)
+            read = [each(message) for each in readers]
+            return _numbers(read[0] if observed.single else _row(read))
+
+        return read_newest
 
     def _keeper(self, topic: str) -> Callable[[Any], None]:
         def keep(message: Any) -> None:
@@ -107,30 +139,14 @@ class Lane:
         for each in self._actions:
             each(action)
 
-    def observe(self) -> Values:
-        """The observations at the current time.
+    def observe(self) -> dict[str, Any]:
+        """The observations at the current time: arrays, or lists of numbers.
 
         Raises:
             CartwheelError: A topic has not had a message yet, or a function has not returned
                 numbers.
         """
-        found: Values = {}
-        for name, source, readers in self._sources:
-            if isinstance(source, TopicFields):
-                message = self._newest[source.topic]
-                if message is None:
-                    raise self._no_message(source.topic)
-                read = [each(message) for each in readers]
-                found[name] = _numbers(read[0] if source.single else _row(read))
-            else:
-                try:
-                    found[name] = _numbers(source(self.world))
-                except (TypeError, ValueError, OverflowError) as error:
-                    raise invalid(
-                        f'the function of the observation "{name}" must return numbers: {error}',
-                        "obs",
-                    ) from None
-        return found
+        return {name: read() for name, read in self._sources}
 
     def _no_message(self, topic: str) -> CartwheelError:
         return CartwheelError(
@@ -170,7 +186,7 @@ def _numbers(value: Any) -> Array:
     return np.array(value, dtype=kind)
 
 
-def stacked(rows: list[Mapping[str, Array]]) -> Values:
+def stacked(rows: list[Mapping[str, Any]]) -> Values:
     """The observations of several worlds, with the world as the first axis.
 
     Raises:
@@ -178,6 +194,9 @@ def stacked(rows: list[Mapping[str, Array]]) -> Values:
     """
     found: Values = {}
     for name, first in rows[0].items():
+        if isinstance(first, list):
+            found[name] = np.array([row[name] for row in rows], dtype=float)
+            continue
         shape = first.shape
         table = found[name] = np.empty((len(rows), *shape), first.dtype)
         for line, row in enumerate(rows):

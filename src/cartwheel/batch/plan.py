@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 import numpy as np
 
@@ -26,9 +26,18 @@ Actions = Mapping[str, Sequence[str] | tuple[Apply, int]]
 """
 Fields = str | Sequence[str]
 """A field that is a number or an array of numbers, such as ``ranges``; or several numbers."""
-Observation = Fields | tuple[str, Fields] | Callable[["World"], Any]
+
+
+class Readable(Protocol):
+    """What an observation reads from a world without a message."""
+
+    def reader(self, world: World) -> Callable[[], list[float]]:
+        """Returns a function that reads the numbers. They are as many each time."""
+
+
+Observation = Fields | tuple[str, Fields] | Callable[["World"], Any] | Readable
 """Fields of the topic that is the name of the observation; or a topic and its fields; or a function
-that returns numbers of a world."""
+that returns numbers of a world; or the pose of a model, see `PoseOf`."""
 Observations = Mapping[str, Observation]
 Backend = Literal["mujoco", "warp"]
 BACKENDS: tuple[Backend, ...] = get_args(Backend)
@@ -74,7 +83,7 @@ class Plan:
     """
 
     act: Mapping[str, tuple[str, ...] | Applied]
-    obs: Mapping[str, TopicFields | Callable[[World], Any]]
+    obs: Mapping[str, TopicFields | Callable[[World], Any] | Readable]
     period: float
     """Simulation time of a step, s."""
     vary: Vary | None
@@ -128,7 +137,7 @@ def columns_of(fields: Iterable[str]) -> tuple[str, ...]:
 
 
 def _observation(name: str, value: Any) -> Any:
-    if callable(value):
+    if callable(value) or hasattr(value, "reader"):
         return value
     topic = name
     if isinstance(value, tuple) and len(value) == 2 and str(value[0]).startswith("/"):
@@ -138,7 +147,7 @@ def _observation(name: str, value: Any) -> Any:
     fields = tuple(value) if isinstance(value, Sequence) else ()
     if not fields or not all(isinstance(each, str) for each in fields):
         raise invalid(f'the observation "{name}" must be a field, a list of fields, a topic with '
-                      "its fields, or a function", "obs")  # fmt: skip
+                      "its fields, a PoseOf, or a function", "obs")  # fmt: skip
     return TopicFields(topic, fields, False)
 
 

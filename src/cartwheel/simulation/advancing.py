@@ -130,7 +130,7 @@ class Advancing(Models):
             if separation.roots:
                 separation.limit(engine.model, engine.data)
             if engine.step >= watch.due:
-                if watch.is_regular:
+                if engine.step % watch.interval == 0:
                     population.rotors.hold()
                 watch.check(population.origin_of)
             if faults.pending is not None:
@@ -184,7 +184,8 @@ class Advancing(Models):
         if (first or last) and self._serve(first, last):
             engine.keep()
         engine.served_ns, engine.served_tasks = engine.time_ns, created
-        self.faults.raise_pending()
+        if self.faults.pending is not None:
+            self.faults.raise_pending()
 
     def _ring(self) -> int | None:
         """Runs the actions that are due, and the commands that they post.

@@ -27,15 +27,15 @@ class Watch:
         self._guard = Guard()
         self.due = 1
         """The step of the next check."""
-        self._steps = 1
-        """Number of steps between two regular checks."""
+        self.interval = 1
+        """A check is due at the multiples of so many steps, whatever has happened before."""
         self._recovered = 0
         """`Engine.commanded` at the last recovery."""
         self._recoveries = 0
 
     def bind(self, model: Any, data: Any) -> None:
         """Continues with a newly compiled model and its data; the next check is due soon."""
-        self._steps = max(1, _INTERVAL_NS // self._engine.step_ns)
+        self.interval = max(1, _INTERVAL_NS // self._engine.step_ns)
         self._wait_for_first()
         self._guard.bind(model, data)
 
@@ -53,23 +53,18 @@ class Watch:
         Raises:
             DivergedError: The state is no longer finite.
         """
-        self.due = self._next_regular
+        self.due = self._next()
         for message in self._guard.check(origin_of):
             self._engine.report(world_codes.PHYSICS_WARNING.diagnostic(message))
         self._guard.keep()
 
-    @property
-    def is_regular(self) -> bool:
-        """Whether a check is due at this step, whatever has happened before."""
-        return self._engine.step % self._steps == 0
-
-    @property
-    def _next_regular(self) -> int:
-        return (self._engine.step // self._steps + 1) * self._steps
+    def _next(self) -> int:
+        """The next multiple of the interval."""
+        return (self._engine.step // self.interval + 1) * self.interval
 
     def _wait_for_first(self) -> None:
         steps = max(1, _FIRST_NS // self._engine.step_ns)
-        self.due = min(self._engine.step + steps, self._next_regular)
+        self.due = min(self._engine.step + steps, self._next())
 
     def begin_recovery(self) -> bool:
         """Whether an external action since the last recovery may have caused the divergence.

@@ -116,6 +116,7 @@ class DifferentialDrive(Drive):
         self._radii = [
             radius for pair in config.pairs for radius in (pair.left_radius, pair.right_radius)
         ]
+        self._separations = [pair.separation for pair in config.pairs]
         count = config.measured_pairs
         states = [wheel.state for wheel in self._wheels]
         self._measured = list(zip(states[0::2], states[1::2], strict=True))[:count]
@@ -197,9 +198,12 @@ class DifferentialDrive(Drive):
                 ]
             else:
                 self._speeds = self._targets
-            pairs = zip(self._speeds, self._radii, strict=True)
-            rotating = [speed / radius for speed, radius in pairs]
-            self._rotating = list(zip(self._wheels, rotating, strict=True))
+            self._rotating = [
+                (wheel, speed / radius)
+                for wheel, speed, radius in zip(
+                    self._wheels, self._speeds, self._radii, strict=True
+                )
+            ]
         for wheel, speed in self._rotating:
             wheel.command = speed
 
@@ -251,11 +255,14 @@ class DifferentialDrive(Drive):
 
     def _set_targets(self, forward: float, turn: float) -> None:
         most = self._config.max_rim_speed
-        self._targets = [
-            clamp(speed, -most, most)
-            for pair in self._config.pairs
-            for speed in rim_speeds(forward, turn, pair.separation)
+        targets = [
+            speed
+            for separation in self._separations
+            for speed in rim_speeds(forward, turn, separation)
         ]
+        if most < math.inf:
+            targets = [clamp(speed, -most, most) for speed in targets]
+        self._targets = targets
 
     def _rotations(self) -> tuple[float, float]:
         # This runs at every step, so it reads the positions without calls.

@@ -40,7 +40,8 @@ class JointStop:
         self._servos: Sequence[ServoHandle] = ()
         self.command: list[float] = [0.0]
         """The last commanded velocity, rad/s or m/s, while the joint has limits."""
-        self._ends: tuple[float, float] | None = None
+        self.ends: tuple[float, float] | None = None
+        """The limits of the joint, rad or m; None without limits."""
         self._turning = math.nan
         """The velocity that the rotor has from here; NaN if it may have another one."""
         self._awake = False
@@ -59,9 +60,9 @@ class JointStop:
 
     def refresh(self, model: Any) -> None:
         """Reads the limits of the joint, which may have changed."""
-        had, self._ends = self._ends is not None, ends_of(model, self._joint)
+        had, self.ends = self.ends is not None, ends_of(model, self._joint)
         self._turning = math.nan
-        if self._ends is None:
+        if self.ends is None:
             if had:
                 self._qvel[self._rotor] = self.command[0]
             return
@@ -74,11 +75,11 @@ class JointStop:
     @property
     def place(self) -> tuple[Any, int]:
         """An array for the motor's commands, and their index."""
-        return (self._qvel, self._rotor) if self._ends is None else (self.command, 0)
+        return (self._qvel, self._rotor) if self.ends is None else (self.command, 0)
 
     def rests(self) -> bool:
         """Whether `follow` would change nothing until there is another command."""
-        ends = self._ends
+        ends = self.ends
         if ends is None:
             return True
         if self.command[0] != 0.0 or self._turning != 0.0:
@@ -87,20 +88,20 @@ class JointStop:
 
     def follow(self) -> None:
         """Turns the rotor; called at every step, after all commands."""
-        if self._ends is None:
+        if self.ends is None:
             return
         for servo in self._servos:
             if servo.mode in ("velocity", "position"):
                 self._turning = math.nan
                 return
-        velocity = inside(self.command[0], self._qpos[self._position], self._ends)
+        velocity = inside(self.command[0], self._qpos[self._position], self.ends)
         if velocity != self._turning:
             # While it is the same, the bits do not depend on how often this runs.
             self._turning = self._qvel[self._rotor] = velocity
 
     def hold(self) -> None:
         """Sets the velocity of the rotor again; see `Rotors`."""
-        if self._ends is not None and not math.isnan(self._turning):
+        if self.ends is not None and not math.isnan(self._turning):
             self._qvel[self._rotor] = self._turning
 
 

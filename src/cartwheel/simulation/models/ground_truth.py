@@ -12,7 +12,7 @@ from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import SimulationError, UnknownNameError
-from cartwheel.geometry import Vec3, cross
+from cartwheel.geometry import Quat, Vec3, cross
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import JointHandle, LinkHandle
 from cartwheel.simulation.limits import STRONGEST, number, numbers
@@ -90,6 +90,15 @@ class GroundTruth:
             self._engine.refresh_motion()
         else:
             self._engine.refresh_poses()
+
+    def place(self, model: str) -> tuple[Vec3, Quat]:
+        """Position and orientation of a model's frame in the world in the current state, as plain
+        tuples for high-rate access.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+        """
+        return self._engine.current_place(self._population.resident(model).entry)
 
     def acceleration(self, model: str, link: str) -> tuple[Vec3, Vec3]:
         """Linear and angular acceleration of a link's origin, m/s² and rad/s², in world axes.

@@ -48,7 +48,8 @@ class Rotors:
         for motor in self._motors:
             motor.rotors[motor.dof] = motor.target
         for stop in self._stops:
-            stop.hold()
+            if stop.ends is not None:
+                stop.hold()
         for motors, servos in self._shared:
             if any(servo.mode in ("velocity", "position") for servo in servos):
                 continue
