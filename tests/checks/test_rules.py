@@ -291,10 +291,13 @@ def test_what_nothing_collides_with_is_reported(bench, spoil, take):
     assert not bench.find(take(text, found[0]), "base-without-collision")
 
 
-@pytest.mark.parametrize(("more", "reported"), [("", True), ("<static>1</static>", False)])
-def test_a_model_of_a_sensor_alone_falls(tmp_path, more, reported):
+@pytest.mark.parametrize(
+    ("more", "gravity", "reported"),
+    [("", "1", True), ("<static>1</static>", "1", False), ("", "0", False)],
+)
+def test_a_model_of_a_sensor_alone_falls(tmp_path, more, gravity, reported):
     path = tmp_path / "eye.sdf"
-    sensor = '<link name="l"><sensor name="s" type="imu"/></link>'
+    sensor = f'<link name="l"><gravity>{gravity}</gravity><sensor name="s" type="imu"/></link>'
     path.write_text(f'<sdf version="1.9"><model name="eye">{more}{sensor}</model></sdf>')
     codes = [each.code.name for each in check(path).findings]
     assert ("base-without-collision" in codes) == reported

@@ -33,7 +33,10 @@ LUMPED_JOINT = Code(
     "CW408", "lumped-joint", "warning", "a plugin measures a fixed joint that Gazebo removes"
 )
 LUMPED_LINK = Code(
-    "CW409", "lumped-link", "info", "a plugin refers to a link that Gazebo merges into another link"
+    "CW409",
+    "lumped-link",
+    "info",
+    "a plugin or tag refers to a link that Gazebo merges into another link",
 )
 BODY_UNKNOWN = Code(
     "CW410", "body-unknown", "error", "the body of a plugin is not a link of the robot"

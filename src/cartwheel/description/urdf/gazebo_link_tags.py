@@ -17,6 +17,7 @@ from cartwheel.description.sdf.links.material import read_material
 from cartwheel.description.sdf.links.surface import not_negative, read_surface
 from cartwheel.description.sdf.sensors import read_sensor, read_sensors, sensor_twice
 from cartwheel.description.urdf.context import UrdfContext
+from cartwheel.description.urdf.merged_gravity import StatedGravity
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 LINK_TAGS = (
@@ -49,7 +50,6 @@ _SURFACE = {
 _MOTION = {
     "selfCollide": "self_collide",
     "self_collide": "self_collide",
-    "gravity": "gravity",
     "kinematic": "kinematic",
     "enable_wind": "wind",
 }
@@ -69,6 +69,8 @@ class LinkTags:
     """The stated fields of `Visual`."""
     material: Material | None = None
     laser_retro: float | None = None
+    gravity: list[StatedGravity] = field(default_factory=list)
+    """The tags about gravity, which count for all links that are merged with this one."""
     sensors: list[Sensor] = field(default_factory=list)
     lights: list[Light] = field(default_factory=list)
     places: dict[str, Origin] = field(default_factory=dict)
@@ -172,7 +174,10 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
 def _read_motion(node: Node, tags: LinkTags) -> None:
     off = node.child("turnGravityOff")
     if off is not None:
-        tags.link["gravity"] = not off.boolean()
+        tags.gravity.append(StatedGravity(off.tag, not off.boolean(), off.origin))
+    on = node.child("gravity")
+    if on is not None:
+        tags.gravity.append(StatedGravity(on.tag, on.boolean(), on.origin))
     tags.link |= node.stated_booleans(_MOTION)
     damping = node.optional_number_at("dampingFactor")
     if damping is not None:

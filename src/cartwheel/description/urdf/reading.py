@@ -26,6 +26,7 @@ from cartwheel.description.urdf.inertia import judged_inertia
 from cartwheel.description.urdf.joint import read_joint, without_invalid_mimics
 from cartwheel.description.urdf.link import ReadLink, read_link
 from cartwheel.description.urdf.material import read_materials
+from cartwheel.description.urdf.merged_gravity import merge_gravity
 from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
@@ -81,7 +82,11 @@ def read_urdf(
     tags = read_gazebo_tags(root, known, {joint.name: joint for joint in joints}, ctx)
     links = [_complete(part, tree, poses[part.link.name], tags, ctx) for part in parts]
     joints = [tags.apply_to_joint(joint) for joint in joints]
-    links = name_collisions(links, tree, [joint.name for joint in joints if joint.preserve_fixed])
+    preserved = [joint.name for joint in joints if joint.preserve_fixed]
+    links = name_collisions(links, tree, preserved)
+    stated = {name: each.gravity for name, each in tags.links.items()}
+    links, overruled = merge_gravity(links, tree, preserved, stated)
+    ctx.diagnostics.extend(overruled)
     ctx.diagnostics.extend(check_contact_sensors(links))
     links = _without_world(links, tree, ctx)
     links = list(with_masses(links, tree, ctx, static=tags.static))
@@ -218,7 +223,8 @@ def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link
 def _warn_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
     """Warns about a robot for rviz only, without collisions."""
     seen = next((link for link in links if link.visuals), None)
-    if seen is not None and not any(link.collisions for link in links):
+    falls = any(link.gravity for link in links)
+    if seen is not None and falls and not any(link.collisions for link in links):
         ctx.warn(
             robot.BASE_WITHOUT_COLLISION,
             "no link of the robot has a <collision>, so the robot falls through the ground",

@@ -47,7 +47,8 @@ def base_no_collision(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if robot.description.static:
             continue
-        nowhere = not any(link.collisions for link in robot.links.values())
+        falls = any(link.gravity for link in robot.links.values())
+        nowhere = falls and not any(link.collisions for link in robot.links.values())
         for root, group in robot.rigid_groups.items():
             links = [robot.links[name] for name in group]
             if root in robot.inbound or any(link.collisions for link in links):
