@@ -346,6 +346,22 @@ def test_a_launch_file_may_contain_the_parameters_itself(tmp_path):
         read_parameters(file)
 
 
+def test_several_parameters_may_be_on_one_line_of_a_launch_file(tmp_path):
+    file = tmp_path / "sim.launch"
+    one = '<rosparam param="{0}">{{type: a/BController, joint: j{0}}}</rosparam>'
+    file.write_text(
+        f"<launch><!-- {one.format('z')}\n-->{one.format('a')}"
+        f'<rosparam file="x>y.yaml"/><node><rosparam>n: 1</rosparam></node>{one.format("b")}\n\n'
+        '<rosparam\n param="c">\n  # <!-- a\n remark -->\n  type: a/BController\n'
+        "  joint: jc\n</rosparam></launch>"
+    )
+    assert read_parameters(file) == {
+        name: {"type": "a/BController", "joint": f"j{name}"} for name in "abc"
+    }
+    stated = ControlFile(path=file, named=True).controllers
+    assert (stated[-1].name, stated[-1].type.node.start_mark.line + 1) == ("c", 8)
+
+
 def test_controllers_in_a_launch_file_run(tmp_path):
     """The launch file is found beside the robot, and may be passed as a controller file."""
     folder = tmp_path / "arm"

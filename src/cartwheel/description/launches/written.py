@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,14 +15,20 @@ from cartwheel.description.files.regular_files import read_regular_text
 _SUFFIXES = (".launch", ".xml")
 _TYPE = re.compile(r"\btype\s*+:\s*+[\"']?+\w++/\w*?Controller\b")
 """The type of a controller."""
-
+_COMMENT = re.compile(r"(<!\[CDATA\[.*?(?:\]\]>|\Z))|<!--.*?(?:-->|\Z)", re.DOTALL)
+_START = re.compile(
+    r"<!\[CDATA\[.*?(?:\]\]>|\Z)|<rosparam(?=[\s/>])((?:[^>\"']++|\"[^\"]*+\"|'[^']*+')*+)(?:>|\Z)",
+    re.DOTALL,
+)
+"""A start tag, with what is between its name and its end."""
 _DEEPEST = 20
 """Maximum number of nested namespaces."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Block:
-    line: int
+    index: int
+    """Its number among the elements of the file."""
     spaces: tuple[str, ...]
     """The namespaces in which it is, from the outermost."""
 
@@ -43,10 +49,13 @@ def written_in(path: Path) -> str | None:
     root = xml.readable_file(path) if path.suffix in _SUFFIXES else None
     if root is None or root.tag != "launch":
         return None
-    source = read_regular_text(path).splitlines(keepends=True)
+    order = {id(each): index for index, each in enumerate(_elements(root))}
+    texts = list(_texts(read_regular_text(path)))
     lines: list[str] = []
-    for block in _blocks(root, ()):
-        head, text = _text_in(source, block.line - 1)
+    for block in _blocks(root, (), order):
+        if block.index >= len(texts):
+            continue  # the file has an encoding that only the XML reader knows
+        head, text = texts[block.index]
         # The first line is that of the tag, so the YAML begins on the next one or on this one.
         first, *rest = textwrap.dedent(text).rstrip().splitlines() or [""]
         found = [first.lstrip(), *rest] if first.strip() else rest
@@ -57,34 +66,40 @@ def written_in(path: Path) -> str | None:
     return "\n".join(lines)
 
 
-def _text_in(source: Sequence[str], index: int) -> tuple[int, str]:
-    """The text of an element that begins on a line, and the index of the line of its content.
+def _elements(root: Node) -> Iterator[Node]:
+    """The ``<rosparam>`` elements of a launch file, in the order of their start tags."""
+    for child in root.children:
+        if child.tag == "rosparam":
+            yield child
+        yield from _elements(child)
 
-    The element's own text lacks its indentation.
+
+def _texts(source: str) -> Iterator[tuple[int, str]]:
+    """The text of each ``<rosparam>`` element, and the index of the line on which it begins.
+
+    The elements' own texts lack their indentation. Comments are left out.
     """
-    last = index
-    rest = source[index].partition("<rosparam")[2]
-    # Not the whole file, because it may have thousands of elements.
-    while "</rosparam" not in rest and last + 1 < len(source):
-        last += 1
-        rest = source[last]
-    text = "".join(source[index : last + 1])
-    begin = text.find(">", max(0, text.find("<rosparam"))) + 1
-    end = text.find("</rosparam", begin)
-    return index + text.count("\n", 0, begin), text[begin : end if end >= 0 else None]
+    plain = _COMMENT.sub(lambda found: found[1] or "\n" * found[0].count("\n"), source)
+    line = place = 0
+    for tag in _START.finditer(plain):
+        line += plain.count("\n", place, tag.end())
+        place = tag.end()
+        if tag[1] is not None:
+            end = place if tag[1].endswith("/") else plain.find("</rosparam", place)
+            yield line, plain[place : end if end >= 0 else None]
 
 
-def _blocks(node: Node, spaces: tuple[str, ...]) -> Iterator[_Block]:
+def _blocks(node: Node, spaces: tuple[str, ...], order: Mapping[int, int]) -> Iterator[_Block]:
     for child in node.children:
         stated = child.attributes.get("ns", "")
         # A namespace that begins with a slash is not relative.
         inside = () if stated.startswith("/") else spaces
         inside += tuple(each for each in stated.split("/") if each)
         if child.tag == "group":
-            yield from _blocks(child, inside)
+            yield from _blocks(child, inside, order)
         elif child.tag == "rosparam" and "file" not in child.attributes:
             named = child.attributes.get("param", "")
             parts = (*inside, *(each for each in named.split("/") if each))
             known = len(parts) <= _DEEPEST and not any("$" in each for each in parts)
             if known and has_controllers(child.text):
-                yield _Block(child.origin.line, parts)
+                yield _Block(order[id(child)], parts)
