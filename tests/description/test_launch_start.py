@@ -145,6 +145,60 @@ def test_a_function_that_returns_the_same_value_twice_is_not(bot: Path) -> None:
     assert not read_launch(written(bot, "a.launch.py", text), {}).diagnostics
 
 
+VARIABLE = """
+def generate_launch_description():
+    name = "bot.xacro"
+    {branches}
+    file = os.path.join(get_package_share_directory("bot"), "urdf", name)
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{{"robot_description": Command(["xacro ", file])}}]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+    ])
+"""
+KNOWN, OTHER = '    name = "bot.xacro"', '    name = "other.xacro"'
+IF = 'if os.environ["KIND"] == "x":'
+
+
+@pytest.mark.parametrize(
+    ("branches", "lines"),
+    [
+        ((IF, OTHER, "else:", KNOWN), (5, 7)),
+        ((IF, OTHER, 'elif os.environ["KIND"] == "y":', OTHER, "else:", KNOWN), (5, 9)),
+        ((IF, KNOWN, "else:", f"    {IF}", f"    {OTHER}", "    else:", f"    {KNOWN}"), (8, 10)),
+        ((OTHER.strip(), IF, KNOWN), (4, 6)),
+        ((IF, "    pass", "else:", OTHER, "if None:", OTHER, "else:", KNOWN), None),
+        ((IF, KNOWN, "else:", KNOWN), None),
+        ((IF, OTHER, "    return None"), None),
+        ((IF, "    other = 1", "    name = name", "else:", "    other = 2"), None),
+        ((IF, KNOWN), None),
+        (("for each in range(2):", f"    {IF}", f"    {KNOWN}", "        break"), None),
+        (
+            (OTHER.strip(), "for each in range(2):", f"    {IF}", f"    {KNOWN}", "        break"),
+            (4, 7),
+        ),
+    ],
+)
+def test_a_variable_that_may_have_different_values_is_reported(
+    bot: Path, branches: tuple[str, ...], lines: tuple[int, int] | None
+) -> None:
+    text = VARIABLE.format(branches="\n    ".join(branches))
+    file = written(bot, "a.launch.py", text)
+    start = read_launch(file, {})
+    assert start.models[0].description.name == "bot.xacro"
+    found = coded(start, LAUNCH_VALUE_UNKNOWN)
+    places = [(each.origin.file, each.origin.line, each.values["used"]) for each in found]
+    assert places == ([] if lines is None else [(str(file), lines[0], str(lines[1]))])
+    assert all((each.values["what"], each.values["name"]) == ("variable", "name") for each in found)
+
+
+def test_a_branch_does_not_know_the_variables_of_the_other(bot: Path) -> None:
+    branches = [IF, '    part = "other"', "else:", '    name = f"{part}.xacro"']
+    text = VARIABLE.format(branches="\n    ".join(["part = 'bot'", *branches]))
+    start = read_launch(written(bot, "a.launch.py", text), {})
+    assert start.models[0].description.name == "bot.xacro"
+
+
 @pytest.mark.parametrize(
     ("process", "world"),
     [

@@ -52,6 +52,7 @@ from cartwheel.description.launches.python_values import (
     path_of,
     text,
 )
+from cartwheel.description.launches.python_variables import Uncertain, Variables
 from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import Facts
 from cartwheel.description.launches.variants import SUFFIXES
@@ -106,7 +107,7 @@ class _Reader:
         self._facts = facts
         self._depth = depth
         self._turns = _MOST_TURNS
-        self._names: dict[str, Any] = {"__file__": str(path)}
+        self._names = Variables({"__file__": str(path)})
         self._functions: dict[str, ast.FunctionDef] = {}
         """The functions of the file that the file itself calls."""
         self._calls = 0
@@ -162,12 +163,8 @@ class _Reader:
                 if end := self._loop(each):
                     return end
             elif isinstance(each, ast.If):
-                holds = self._holds(each.test)
-                body = self.block([] if holds is False else each.body)
-                other = self.block([] if holds is True else each.orelse)
-                if (body or holds is False) and (other or holds is True):
-                    # Of different ends, the one after which more may be executed.
-                    return min({body, other} - {""}, key=_ENDS.index)
+                if end := self._branches(each):
+                    return end
             elif isinstance(each, ast.With):
                 for item in each.items:
                     if item.optional_vars is not None:
@@ -182,6 +179,23 @@ class _Reader:
                 for name in ("body", "orelse"):
                     self.block(getattr(each, name, ()) or ())
         return ""
+
+    def _branches(self, node: ast.If) -> _End:
+        """Evaluates the branches that may be executed, each with the variables before them."""
+        holds = self._holds(node.test)
+        if holds is not None:
+            return self.block(node.body if holds else node.orelse)
+        self._facts.effort.spend(2 * len(self._names))
+        before = self._names.copy()
+        body = self.block(node.body)
+        first, self._names = self._names, before.copy()
+        other = self.block(node.orelse)
+        if other == "return":
+            self._names = first
+        elif body != "return":
+            self._names.merge(before, first, node.lineno, self._facts.effort)
+        # Of different ends, the one after which more may be executed.
+        return min(body, other, key=_ENDS.index)
 
     def _loop(self, loop: ast.For) -> _End:
         """Evaluates a loop. One over unknown values may be executed any number of times."""
@@ -199,8 +213,17 @@ class _Reader:
         if isinstance(node, ast.List | ast.Tuple):
             return self._elements(node.elts, self._assigned)
         if isinstance(node, ast.Name) and node.id in self._names:
-            return self._names[node.id]
+            return self._read(node.id)
         return self.value(node)
+
+    def _read(self, name: str) -> Any:
+        """The value of a variable or function; that a variable may have several is noted."""
+        choice = self._names.choice(name)
+        if choice is not None:
+            place = (self._path, choice.other, name)
+            noted = Uncertain(what="variable", used=choice.used)
+            self._facts.uncertain.setdefault(place, noted)
+        return self._names.get(name, self._functions.get(name, NOTHING))
 
     @staticmethod
     def _elements(nodes: list[ast.expr], value: Callable[[ast.expr], Any]) -> list[Any]:
@@ -216,7 +239,7 @@ class _Reader:
 
     def _assign(self, target: ast.expr, value: Any) -> None:
         if isinstance(target, ast.Name):
-            self._names[target.id] = value
+            self._names.assign(target.id, value, target.lineno)
         elif isinstance(target, ast.Tuple | ast.List):
             known = isinstance(value, list) and len(value) == len(target.elts)
             for index, each in enumerate(target.elts):
@@ -275,7 +298,7 @@ class _Reader:
         if isinstance(node, ast.Constant):
             return node.value
         if isinstance(node, ast.Name):
-            return used(self._names.get(node.id, self._functions.get(node.id, NOTHING)))
+            return used(self._read(node.id))
         if isinstance(node, ast.JoinedStr):
             return concatenated(self.value(each) for each in node.values)
         if isinstance(node, ast.FormattedValue):
@@ -455,7 +478,7 @@ class _Reader:
                 given[name] = NOTHING if value is None else self.value(value)
         given |= dict(zip(plain, places, strict=False))
         given |= {name: value for name, value in words.items() if name in given}
-        self._names = {**outside, **given}
+        self._names = outside.within(given)
         self._calls += 1
         before, self._returned = self._returned, []
         self.block(function.body)
@@ -466,8 +489,8 @@ class _Reader:
             return NOTHING
         (first, _), (last, value) = found[0], found[-1]
         if differ((each for _, each in found), self._facts.effort):
-            place = (self._path, first)
-            self._facts.uncertain.setdefault(place, (function.name, last))
+            place = (self._path, first, function.name)
+            self._facts.uncertain.setdefault(place, Uncertain(what="return", used=last))
         return NOTHING if value is None else value
 
     def opaque(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:

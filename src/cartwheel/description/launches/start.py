@@ -158,15 +158,17 @@ def _unknown(
     for what, text in _PARTS.items():
         if any(what in each.spawn.unknown for each in models):
             yield _lost(file, f"{text} of a model is unknown, {_WHY}", what=what)
-    for (path, line), (name, used) in facts.uncertain.items():
+    for (path, line, name), each in facts.uncertain.items():
+        owner = f'the function "{name}" returns'
+        if each.what == "variable":
+            owner = f'the variable "{name}" has'
         yield _lost(
             path,
-            f'which value the function "{name}" returns is unknown, {_WHY}; that in line {used} '
-            "is used",
-            what="return",
+            f"which value {owner} is unknown, {_WHY}; that in line {each.used} is used",
+            what=each.what,
             line=line,
             name=name,
-            used=str(used),
+            used=str(each.used),
         )
     for name in facts.lost_bridges:
         yield _lost(

@@ -24,6 +24,7 @@ from cartwheel.description.launches.controllers import (
     by_spawner,
 )
 from cartwheel.description.launches.effort import UNKNOWN, Effort
+from cartwheel.description.launches.python_variables import Uncertain
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
     Spawn,
@@ -145,9 +146,9 @@ class Facts:
     """Names of the arguments of the launch file itself that can be set."""
     count: int = 0
     """Number of files that were read."""
-    uncertain: dict[tuple[Path, int], tuple[str, int]] = field(default_factory=dict)
-    """Functions in Python that may return different values: the file and line of the first
-    ``return``, with the function's name and the line of the one that is used."""
+    uncertain: dict[tuple[Path, int, str], Uncertain] = field(default_factory=dict)
+    """Functions and variables in Python that may have different values, by the file, the line of
+    the first value and the name."""
     defaults: dict[str, str] = field(default_factory=dict)
     """The arguments of the launch file itself that have their default, such as the robot's type."""
 
