@@ -538,16 +538,16 @@ def test_a_multiplier_without_a_size_is_that_of_the_measured_separation(reported
     assert reported(car(), controller_files=[path]) == []
 
 
+SKID_CONTROLLER = ROS2.format(type="diff_drive_controller/DiffDriveController") + (
+    "    left_wheel_names: [front_left_joint, rear_left_joint]\n"
+    "    right_wheel_names: [front_right_joint, rear_right_joint]\n"
+    f"    wheel_radius: {RADIUS}\n"
+)
+
+
 def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tmp_path):
     path = tmp_path / "car.yaml"
-    wheels = {
-        "left": '"front_left_joint", "rear_left_joint"',
-        "right": '"front_right_joint", "rear_right_joint"',
-    }
-    text = ROS2.format(type="diff_drive_controller/DiffDriveController") + (
-        f"    left_wheel_names: [{wheels['left']}]\n    right_wheel_names: [{wheels['right']}]\n"
-        f"    wheel_separation: {TRACK}\n    wheel_radius: {RADIUS}\n"
-    )
+    text = f"{SKID_CONTROLLER}    wheel_separation: {TRACK}\n"
     slow = TRACK**2 / (TRACK**2 + BASE**2)
     for multiplier, ratio in ((1.0, slow), (2.0, 2 * slow)):
         path.write_text(f"{text}    wheel_separation_multiplier: {multiplier}\n")
@@ -562,6 +562,31 @@ def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tm
         )
         report = bench.report(car(), controller_files=[path])
         assert not [each for each in report.findings if each.code is SKID_STEERING]
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize("stated", [(TRACK, None), (TRACK, 0.75), (None, 0.75), (None, 5.0)])
+def test_each_parameter_of_a_controller_in_the_advice_compensates_for_wheels_that_slide(
+    bench, tmp_path, stated
+):
+    path = tmp_path / "car.yaml"
+
+    def finding(separation, multiplier):
+        pairs = (("wheel_separation", separation), ("wheel_separation_multiplier", multiplier))
+        lines = [f"    {name}: {value}\n" for name, value in pairs if value is not None]
+        path.write_text(SKID_CONTROLLER + "".join(lines))
+        report = bench.report(car(), controller_files=[path])
+        return next((each for each in report.findings if each.code is SKID_STEERING), None)
+
+    separation, multiplier = stated
+    found = finding(*stated)
+    advised = re.search(r"(?i:a wheel separation) of (\S+) m", found.hint)
+    assert (advised is None) is (separation is None)
+    if advised is not None:
+        assert finding(float(advised[1]), multiplier) is None
+    advised = re.search(r'a "wheel_separation_multiplier" of (\S+)', found.hint, re.IGNORECASE)
+    assert finding(separation, float(advised[1])) is None
+    assert ("wheel_separation_multiplier" in found.message) is (multiplier == 5.0)
 
 
 @pytest.mark.wording

@@ -367,6 +367,16 @@ def test_the_measured_turn_rate_of_sliding_wheels_is_stated_if_it_is_not_the_pre
     assert cause_of_drive([estimate], 0.4, turning=True, arc=True) is estimate
 
 
+@pytest.mark.wording
+def test_the_advice_for_the_measured_turn_rate_names_the_parameter_of_the_controller():
+    values = {"ratio": 0.4, "stated": 0.5, "rolling": 1.2, "factor": 1.5, "multiplier": "times"}
+    for measured in (False, True):
+        skids = SKID_STEERING.diagnostic("slide", values={**values, "measured": measured})
+        cause = cause_of_drive([skids], 0.6, turning=True)
+        assert ("separation of 0.8333 m" in cause.hint) is not measured
+        assert '"times" of 2.5 compensates' in cause.hint
+
+
 def test_a_wrong_separation_is_why_a_robot_with_sliding_wheels_turns_too_fast():
     skids = SKID_STEERING.diagnostic("slide", values={"ratio": 4.7, "stated": 1.0, "rolling": 11.0})
     apart = WHEEL_SEPARATION_MISMATCH.diagnostic("w", values={"stated": 1.0, "measured": 0.09})

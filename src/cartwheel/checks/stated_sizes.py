@@ -54,6 +54,10 @@ class Stated:
     mark: str
     factor: float = 1.0
     """Factor by which a controller multiplies the value."""
+    multiplier: str = ""
+    """Name of the parameter with this factor; empty if there is none, or one for each side."""
+    measured: bool = False
+    """Whether a controller measures the value itself, so that only the factor is stated."""
     write: Callable[[str], str]
     """Formats a number as replacement text."""
     place: Place
@@ -295,6 +299,7 @@ def _of_controller(
             second=sides[1] if len(sides) == 2 else (),
             skids=len(sides[0]) > 1,
             factor=factor,
+            multiplier="" if any(sided) else f"{name.rpartition('/')[2]}_multiplier",
             origin=written.origin,
             mark=written.text,
             write=written.replaced,
@@ -305,7 +310,7 @@ def _of_controller(
         elif one.measure == "apart" and times is not None:
             # The controller measures the distance between the wheels itself.
             apart = mean_between(one, beside=True)
-            yield replace(one, value=apart, write=partial(_unscaled, times))
+            yield replace(one, value=apart, write=partial(_unscaled, times), measured=True)
 
 
 def _unscaled(times: Value, _: str) -> str:

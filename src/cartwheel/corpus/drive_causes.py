@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import replace
 
+from cartwheel.checks.rules.wheels.wheel_separation import compensation
 from cartwheel.codes import robot, running
 from cartwheel.corpus.faults import most_severe
 from cartwheel.corpus.movers import reports
@@ -79,13 +80,25 @@ def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
     predicted = skids.values.get("ratio", estimate)
     if not isinstance(predicted, float) or abs(predicted - ratio) <= _DIFFERS:
         return skids
+    values = skids.values
     hint = ""
     if isinstance(stated, float):
-        hint = f"A wheel separation of {stated / ratio:.4g} m compensates for this."
+        factor = values.get("factor", 1.0)
+        hint = compensation(
+            stated,
+            factor if isinstance(factor, float) else 1.0,
+            str(values.get("multiplier", "")),
+            ratio,
+            scaled=values.get("measured") is True,
+        )
+    why = f"the {'tracks' if 'reach' in values else 'wheels'} slide when the robot turns"
+    if "hardware" in values:
+        why = (
+            f'the hardware "{values["hardware"]}" turns all wheels at the same speed, so they slide'
+        )
     return replace(
         skids,
-        message=f"the {'tracks' if 'reach' in skids.values else 'wheels'} slide when the robot "
-        f"turns, so it turns at {ratio:.0%} of the commanded rate, as measured",
+        message=f"{why}, so it turns at {ratio:.0%} of the commanded rate, as measured",
         hint=hint,
         values={**skids.values, "measured": ratio},
     )

@@ -114,8 +114,9 @@ class SteerBotHardware(Hardware):
         ratio = _turn_ratio(owner.part.description, given)
         owner.part.report(
             robot.SKID_STEERING.diagnostic(
-                "all four wheels turn at the same speed, as with the original hardware, so they "
-                f"slide in curves, and the robot turns at about {ratio:.0%} of the steered rate",
+                f'the hardware "{SIM_TYPE}" turns all four wheels at the same speed, in Gazebo as '
+                f"well, so they slide in curves, and the robot turns at about {ratio:.0%} of the "
+                "rate that the steering angle demands",
                 origin=origin,
                 values={"hardware": SIM_TYPE, "estimate": ratio},
             )

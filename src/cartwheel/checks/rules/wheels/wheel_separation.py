@@ -97,7 +97,6 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
         ratio = turn_ratio(one.robot, left, right, axle, one.used / 2)
         if ratio is None or ratio == 0 or abs(ratio - 1.0) <= _LEAST_SKID:
             continue
-        wanted = one.value / ratio
         yield robot_codes.SKID_STEERING.diagnostic(
             message=f"the wheels slide when the robot turns, {_effect(one, ratio)}",
             values={
@@ -105,13 +104,35 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
                 "joint": one.first[0],
                 "ratio": ratio,
                 "stated": one.value,
-                "fits": wanted,
+                "factor": one.factor,
+                "multiplier": one.multiplier,
+                "measured": one.measured,
+                "fits": one.value / ratio,
                 "rolling": one.used / mean_between(one, beside=True),
             },
             origin=one.origin,
-            hint=f"A wheel separation of {wanted:.4g} m compensates for this.",
+            hint=compensation(one.value, one.factor, one.multiplier, ratio, scaled=one.measured),
             mark=one.mark,
         )
+
+
+def compensation(
+    separation: float, factor: float, multiplier: str, ratio: float, *, scaled: bool
+) -> str:
+    """The hint how a parameter compensates for wheels that slide.
+
+    Args:
+        separation: The wheel separation that is used, m.
+        factor: Factor by which a controller multiplies it.
+        multiplier: Name of the parameter with this factor; empty if there is none.
+        ratio: Turn rate relative to the commanded one.
+        scaled: Whether only the factor can be stated.
+    """
+    wanted = [] if scaled else [f"a wheel separation of {separation / ratio:.4g} m"]
+    if multiplier:
+        wanted.append(f'a "{multiplier}" of {factor / ratio:.4g}')
+    said = " or ".join(wanted)
+    return f"{said[:1].upper()}{said[1:]} compensates for this." if said else ""
 
 
 def _effect(one: Stated, ratio: float) -> str:
@@ -120,7 +141,10 @@ def _effect(one: Stated, ratio: float) -> str:
     if ratio <= 1.0:
         return rate
     times = f", multiplied by {one.factor:.4g}," if one.factor != 1.0 else ""
-    return f"but {one.label} of {one.value:.4g} m{times} compensates for more than that, {rate}"
+    stated = f"{one.label} of {one.value:.4g} m{times}"
+    if one.measured:
+        stated = f'"{one.multiplier}" of {one.factor:.4g}'
+    return f"but {stated} compensates for more than that, {rate}"
 
 
 def _with_followers(one: Stated, side: Sequence[str]) -> list[Joint]:
