@@ -63,7 +63,43 @@ def test_brakes_that_exceed_the_grip_at_a_low_speed_are_reported(tmp_path, dynam
 @pytest.mark.wording
 def test_friction_that_exceeds_the_grip_brakes_at_any_speed(tmp_path):
     (finding,) = found(tmp_path, car('damping="0" friction="2"'), WHEELS_BRAKED)
-    assert finding.message.endswith("its driven wheels slip at any speed")
+    assert finding.message.endswith("slip at any speed")
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize(("count", "shown"), [(1, 'joint "front_left_joint", '), (6, "and 2 more")])
+def test_only_some_of_many_braked_joints_are_listed(tmp_path, count, shown):
+    sides = [("left", 0.15), ("right", -0.15)] * 3
+    wheels = "".join(
+        WHEEL.format(
+            name=f"front_{side}{n // 2 or ''}", parent="base", place=f"{0.2 + n / 9} {y} 0"
+        )
+        for n, (side, y) in enumerate(sides[:count])
+    ).replace('<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/><dynamics damping="5"/>')
+    drive = DRIVE.format(joints=PAIR.format(""))
+    (finding,) = found(tmp_path, BODY.format(more="") + REAR + wheels + drive, WHEELS_BRAKED)
+    assert shown in finding.message
+    assert finding.message.count("front_") == min(count, 4)
+
+
+def test_each_of_several_drives_has_its_own_traction(tmp_path):
+    """Drives push together, so only wheels that brake more than all of them are reported."""
+    middle = "".join(
+        WHEEL.format(name=f"middle_{side}", parent="base", place=f"0 {y} 0")
+        for side, y in (("left", 0.15), ("right", -0.15))
+    )
+    rough = "<mu1>0.5</mu1><mu2>0.5</mu2>"
+    drives = DRIVE.format(joints=PAIR.format("")) + DRIVE.format(joints=PAIR.format("middle_"))
+    for damping, several in ((0.3, False), (1.0, True)):
+        robot = car(f'damping="{damping}"', rough, drive=middle + drives)
+        findings = found(tmp_path, robot, WHEELS_BRAKED)
+        assert len(findings) == 2 * several
+    rear, front = (each.values["traction"] for each in findings)
+    # On three axles at equal distances, each carries a third of the weight.
+    third = (MASS + 1) / 3 * GRAVITY
+    assert (rear, front) == pytest.approx((0.5 * third, third), rel=1e-5)
+    speeds = [each.values["speed"] for each in findings]
+    assert speeds == pytest.approx([each * RADIUS**2 / 2 for each in (rear, front)])
 
 
 def test_wheels_with_motors_brake_nothing(tmp_path):

@@ -209,19 +209,19 @@ def braking(robot: Robot, driven: Sequence[Joint]) -> Braking | None:
     known = [each for each in bottoms if each is not None]
     if not driven or len(known) < len(bottoms) or not robot.placed.issuperset(wheels):
         return None
-    passive = [
+    others = [
         joint
         for name in _touching(robot, min(known)) - wheels
         if (joint := robot.inbound.get(name)) is not None
-        and joint.name not in robot.driven
         and rolls_only_forward(robot, joint, driven)
         and wheel_radius(robot, joint)
     ]
+    passive = [each for each in others if each.name not in robot.driven]
     braked = tuple(each for each in passive if each.axis.damping or each.axis.friction)
     if center is None or not braked:
         return None
     axle = wheel_axis(robot, driven[0])
-    places = [wheel_tread(robot, joint) for joint in (*driven, *passive)]
+    places = [wheel_tread(robot, joint) for joint in (*driven, *others)]
     x = np.array([_ahead(axle, each) for each in places])
     y = np.array([float(axle @ each) for each in places])
     loads = _loads(x, y, (_ahead(axle, center), float(axle @ center)))[: len(driven)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from cartwheel.checks import plugin_tags
 from cartwheel.checks.controller_claims import claims, has_standard_hardware, managers, offers
+from cartwheel.checks.naming import joints_named
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -16,7 +17,6 @@ from cartwheel.dialects.ros_control.selection import launched
 from cartwheel.dialects.tag_roles import DRIVEN_ROLES
 from cartwheel.errors import Diagnostic, Origin
 
-_SHOWN = 4
 _HOLDING = ("position", "velocity")
 """Interfaces by which ROS 1's hardware holds a joint without a controller."""
 
@@ -48,17 +48,12 @@ def joint_driven_twice(subject: Subject) -> Iterator[Diagnostic]:
                 pairs.setdefault((first, other), []).append(joint)
         for (first, other), joints in pairs.items():
             yield running.JOINT_DRIVEN_TWICE.diagnostic(
-                f"{_named(joints)} driven by {first.text} and by {other.text}",
+                f"{joints_named(joints)} {'are' if len(joints) > 1 else 'is'} driven by "
+                f"{first.text} and by {other.text}",
                 values={"joint": joints[0], "joints": tuple(joints)},
                 origin=other.origin,
                 hint="Remove one of them, or let it drive other joints.",
             )
-
-
-def _named(joints: list[str]) -> str:
-    names = ", ".join(f'"{name}"' for name in joints[:_SHOWN])
-    more = f" and {len(joints) - _SHOWN} more" if len(joints) > _SHOWN else ""
-    return f"joint {names} is" if len(joints) == 1 else f"joints {names}{more} are"
 
 
 def _plugins(robot: Robot) -> Iterator[tuple[str, _Driver]]:
