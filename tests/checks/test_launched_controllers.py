@@ -3,11 +3,12 @@
 import pytest
 from tests.corpus.carts import cart, controlled
 
-from cartwheel.checks import controller_search
 from cartwheel.checks.checking import check
-from cartwheel.codes.devices import CONTROLLER_UNDEFINED
+from cartwheel.checks.project.run import check as check_project
+from cartwheel.codes.devices import CONTROLLER_UNDEFINED, CONTROLLERS_NOT_FOUND
 from cartwheel.codes.robot import WHEEL_SEPARATION_MISMATCH
 from cartwheel.corpus import try_robot
+from cartwheel.description.launches import own
 
 LAUNCH = """<launch><node pkg="robot_state_publisher" exec="robot_state_publisher">
 <param name="robot_description"
@@ -56,7 +57,7 @@ def test_the_launch_files_near_the_robots_of_a_world_are_read_once(tmp_path, mon
         read.append(folder)
         return ()
 
-    monkeypatch.setattr(controller_search, "launches_near", near)
+    monkeypatch.setattr(own, "launches_near", near)
     (tmp_path / "package.xml").write_text("<package><name>hall</name></package>")
     control = '<plugin filename="gz_ros2_control-system" name="c"/>'
     models = "".join(
@@ -66,3 +67,86 @@ def test_the_launch_files_near_the_robots_of_a_world_are_read_once(tmp_path, mon
     path.write_text(f'<sdf version="1.6"><world name="hall">{models}</world></sdf>')
     check(path)
     assert len(read) == 1
+
+
+PUBLISHER = """controller_manager:
+  ros__parameters:
+    states: {type: joint_state_broadcaster/JointStateBroadcaster}
+"""
+
+
+def apart(folder, *, names="base arm", marker=".git"):
+    """A cart and its launch file in packages that are in different folders of a repository."""
+    path = spawned(folder / "robots", named=False, launch="<launch/>")
+    start = folder / "programs" / "start"
+    (start / "settings").mkdir(parents=True)
+    (start / "package.xml").write_text("<package><name>start</name></package>")
+    launch = LAUNCH.replace("cart)/settings", "start)/settings").replace("base.yaml", "own.yaml")
+    (start / "start.launch.xml").write_text(launch.replace('args="base"', f'args="{names}"'))
+    base = path.parent / "settings" / "base.yaml"
+    (start / "settings" / "own.yaml").write_text(
+        base.read_text() if names != "states" else PUBLISHER
+    )
+    base.unlink()
+    if marker:
+        (folder / marker).mkdir()
+    return path
+
+
+@pytest.mark.parametrize(
+    ("names", "code", "value"),
+    [
+        ("arm", CONTROLLER_UNDEFINED, ("controller", "arm")),
+        ("base", WHEEL_SEPARATION_MISMATCH, ("stated", 0.4)),
+        ("states", CONTROLLERS_NOT_FOUND, ("started", ("states",))),
+    ],
+)
+def test_launch_files_of_the_whole_repository_are_read(tmp_path, names, code, value):
+    path = apart(tmp_path, names=names)
+    (found,) = [each for each in check(path).findings if each.code is code]
+    assert found.values[value[0]] == value[1]
+    assert found.severity == "warning"
+    verdict = try_robot(path, standing=1.0)
+    assert code in {each.code for each in (*verdict.faults, *verdict.observed)}
+
+
+def test_without_a_repository_launch_files_in_the_given_folder_are_read(tmp_path):
+    apart(tmp_path / "one", marker="")
+    apart(tmp_path / "two", names="base", marker="")
+    (tmp_path / "one" / "robots" / "cart").rename(tmp_path / "one" / "robots" / "cart1")
+
+    def undefined(path):
+        return [f for f in check_project(path).findings if f.code is CONTROLLER_UNDEFINED]
+
+    assert len(undefined(tmp_path)) == 1
+    assert undefined(tmp_path / "one" / "robots" / "cart1" / "robot.urdf") == []
+
+
+def test_the_launch_files_of_a_repository_are_read_once_for_a_folder(tmp_path, monkeypatch):
+    read = []
+
+    def near(folder, package_path=()):
+        read.append(folder)
+        return ()
+
+    monkeypatch.setattr(own, "launches_near", near)
+    path = apart(tmp_path)
+    (path.parent / "other.urdf").write_text(path.read_text())
+    assert len(check_project(tmp_path).reports) == 2
+    assert read == [path.parent, tmp_path]
+
+
+def test_a_manager_without_controllers_is_only_noted(tmp_path):
+    """The controllers may be in another repository."""
+    path = apart(tmp_path, names="base")
+    assert CONTROLLERS_NOT_FOUND not in [each.code for each in check(path).findings]
+    (tmp_path / "programs" / "start" / "start.launch.xml").unlink()
+    (found,) = [each for each in check(path).findings if each.code is CONTROLLERS_NOT_FOUND]
+    assert (found.severity, found.values["started"]) == ("info", ())
+    text = path.read_text()
+    drive = (
+        '<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><leftJoint>left_joint'
+        "</leftJoint><rightJoint>right_joint</rightJoint></plugin></gazebo></robot>"
+    )
+    path.write_text(text.replace("</robot>", drive))
+    assert CONTROLLERS_NOT_FOUND not in [each.code for each in check(path).findings]

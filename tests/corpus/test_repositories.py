@@ -8,7 +8,7 @@ from cartwheel.checks.checking import check
 from cartwheel.cli.commands.corpus import corpus
 from cartwheel.corpus import try_robot
 from cartwheel.description.files.repositories import repository_of
-from cartwheel.description.launches import LaunchUse, own_launches, search
+from cartwheel.description.launches import LaunchUse, own, own_launches
 
 ARM = (
     '<robot name="arm"><link name="world"/><link name="base"/><link name="upper">'
@@ -115,16 +115,16 @@ def test_the_root_of_a_repository_is_found(tmp_path):
 
 def test_the_repository_of_launch_files_in_one_folder_is_looked_up_once(folder, monkeypatch):
     looked = []
-    original = search.repository_of
+    original = own.repository_of
 
     def counted(file, within=None):
         looked.append(file.parent)
         return original(file, within)
 
-    monkeypatch.setattr(search, "repository_of", counted)
+    monkeypatch.setattr(own, "repository_of", counted)
     uses = [
         LaunchUse(file=folder / "two" / f"{number}.launch", description=None, arguments={})
         for number in range(20)
     ]
-    assert own_launches(folder / "one" / "arm.urdf", uses) == uses
-    assert looked.count(folder / "two") == 1
+    assert own_launches(folder / "one" / "arm.urdf", uses).launches == uses
+    assert looked.count(folder / "two") == looked.count(folder / "one") == 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
 from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.elements.node import Node
+from cartwheel.description.launches import OwnLaunches
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
@@ -60,6 +61,7 @@ def check(
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
     controller_files: Sequence[Path] = (),
+    launches: Callable[[Path], OwnLaunches] | None = None,
 ) -> Report:
     """Checks a description for errors and misleading values.
 
@@ -68,6 +70,7 @@ def check(
         arguments: Values of ``name:=value`` arguments.
         package_path: As for `load`.
         controller_files: Controller files to use instead of those found near the robot.
+        launches: Returns the launch files of a description's author; None to search them.
 
     Raises:
         DescriptionError: The file is not a description, or its XML or xacro cannot be read.
@@ -79,7 +82,7 @@ def check(
         return Report(file=opened.files[0], name=name, findings=(), complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
         understand(opened)  # raises an error that says what the file contains
-    subject = _subject(opened, controller_files)
+    subject = _subject(opened, controller_files, launches)
     # Numbers near the largest float overflow; rules report nothing about non-finite results.
     with np.errstate(all="ignore"):
         findings = _distinct(
@@ -101,7 +104,9 @@ def check(
     )
 
 
-def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
+def _subject(
+    opened: Opened, given: Sequence[Path], launches: Callable[[Path], OwnLaunches] | None
+) -> Subject:
     tree = nodes.copy(opened.root)
     mended: set[str] = set()
     if tree.tag == "robot":
@@ -121,7 +126,7 @@ def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
     robots = tuple(
         Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
     )
-    control, launched = controller_files_of(robots, opened.packages, given)
+    control, launched = controller_files_of(robots, opened.packages, given, launches)
     subject = Subject(
         root=opened.root,
         files=opened.files,
@@ -131,7 +136,7 @@ def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
         failures=tuple(failures),
         gaps=tuple(gaps),
         control=control,
-        launched=tuple(launched),
+        launched=launched,
     )
     for robot in robots:
         robot.controlled = controlled_sides(subject, robot)

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 from cartwheel.checks import nodes
 from cartwheel.checks.controller_files import ControlFile, Controller, Value
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
+from cartwheel.codes.devices import CONTROLLERS_NOT_FOUND
 from cartwheel.description.model import Element, PluginTag
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
 from cartwheel.dialects.ros_control.parameters import OWN, SIZES, Role, Row, rows
-from cartwheel.errors import Severity, UnknownNameError
+from cartwheel.errors import Diagnostic, Severity, UnknownNameError
 
 _INTERFACES = {
     "PositionJointInterface": ("position",),
@@ -31,6 +33,8 @@ _SIMULATED = re.compile(
 )
 """Simulated ros2_control hardware: a real robot's tags may describe different interfaces."""
 _STANDARD_HARDWARE = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
+_BROADCASTER = "Broadcaster"
+"""End of the types of ROS 2's controllers that command nothing."""
 _GAINS = ("p", "i", "ff_velocity_scale")
 """Gains of ROS 2, one of which moves a joint."""
 
@@ -174,6 +178,35 @@ def managers(robot: Robot, *, ros2: bool) -> list[PluginTag]:
         and issubclass(plugin, ControlPlugin)
         and ros2 != (plugin is plugin_named(ROS_CONTROL))
     ]
+
+
+def commands_joints(controller: Controller) -> bool:
+    """Whether a controller may command joints; a publisher of states does not."""
+    try:
+        family = find_type(controller.kind, ros2=controller.file.is_ros2)
+    except UnknownNameError:
+        return not controller.kind.endswith(_BROADCASTER)
+    return any(
+        each.role == "joint" for each in rows(family.parameters, ros2=controller.file.is_ros2)
+    )
+
+
+def uncommanded(tag: PluginTag, launch: Path | None, started: Sequence[str]) -> Diagnostic:
+    """The diagnostic that no controller of a manager commands a joint.
+
+    Args:
+        tag: The controller manager.
+        launch: The launch file that starts its controllers.
+        started: Their names.
+    """
+    message = "no file contains controllers for this controller manager"
+    if started and launch is not None:
+        names = ", ".join(f'"{name}"' for name in started)
+        verb = "which commands" if len(started) == 1 else "which command"
+        message = f'"{launch.name}" starts only {names}, {verb} no joint'
+    return CONTROLLERS_NOT_FOUND.diagnostic(
+        message, origin=tag.origin, values={"started": tuple(started)}
+    )
 
 
 def has_standard_hardware(robot: Robot, *, ros2: bool) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, partial
 from pathlib import Path
 
 from cartwheel.checks.controller_files import ControlFile
@@ -12,14 +11,7 @@ from cartwheel.codes import devices as devices_codes
 from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.repositories import repository_of
-from cartwheel.description.launches import (
-    LaunchUse,
-    chosen,
-    launches_near,
-    own_folder,
-    own_launches,
-    root_of,
-)
+from cartwheel.description.launches import LaunchSearch, OwnLaunches, chosen
 from cartwheel.description.model import Element
 from cartwheel.dialects.ros_control.selection import Selection, selection
 from cartwheel.dialects.ros_control.suggestion import files_for, is_controlled
@@ -30,18 +22,21 @@ def controller_files_of(
     robots: Sequence[Robot],
     packages: Packages,
     given: Sequence[Path],
-) -> tuple[list[tuple[Robot, ControlFile]], list[Diagnostic]]:
-    """The controller files of each robot, and the mistakes in launch files that start controllers.
+    search: Callable[[Path], OwnLaunches] | None = None,
+) -> tuple[list[tuple[Robot, ControlFile]], list[tuple[Robot, Selection]]]:
+    """The controller files of each robot, and what launch files load for those with a controller
+    manager.
 
     Args:
         robots: Robots in the description.
         packages: Resolves package URIs.
         given: Files from the user; no other files are searched.
+        search: Returns the launch files of a description's author; None to search them.
     """
     found: list[tuple[Robot, ControlFile]] = []
-    problems: list[Diagnostic] = []
+    selected: list[tuple[Robot, Selection]] = []
     # The robots of a world are often in one folder.
-    launches_in = cache(partial(launches_near, package_path=packages.package_path))
+    search = search or LaunchSearch(packages.package_path).of
     for robot in robots:
         described = robot.description
         found += [
@@ -53,13 +48,15 @@ def controller_files_of(
                 file = ControlFile(path=path, named=True, element=element, robot=described)
                 found.append((robot, file))
         if not given:
-            launched = _launched(robot, launches_in)
-            near = dict.fromkeys((*_near(robot), *map(_plain, launched.files)))
+            near = dict.fromkeys(_near(robot))
+            if is_controlled(described):
+                launched = _launched(robot, search)
+                near |= dict.fromkeys(map(_plain, launched.files))
+                selected.append((robot, launched))
             found += [
                 (robot, ControlFile(path=path, named=False, robot=described)) for path in near
             ]
-            problems += launched.problems
-    return found, problems
+    return found, selected
 
 
 def _near(robot: Robot) -> Iterator[Path]:
@@ -71,15 +68,12 @@ def _near(robot: Robot) -> Iterator[Path]:
         yield from (path for path in found if _belongs(path, file))
 
 
-def _launched(robot: Robot, launches_in: Callable[[Path], Sequence[LaunchUse]]) -> Selection:
-    """What launch files load for the controllers of a robot; see `launches_near`."""
+def _launched(robot: Robot, search: Callable[[Path], OwnLaunches]) -> Selection:
+    """What launch files load for the controllers of a robot."""
     file = Path(robot.description.origin.file)
-    folder = root_of(file)
-    if folder is None or not is_controlled(robot.description):
-        return Selection(files=(), names=())
-    launches = own_launches(file, launches_in(folder))
-    use = chosen(file, launches)
-    return selection(robot.description, use, launches, within=own_folder(file))
+    own = search(file)
+    use = chosen(file, own.launches)
+    return selection(robot.description, use, own.launches, within=own.folder)
 
 
 def named_files(robot: Robot) -> Iterator[Element]:

@@ -40,7 +40,7 @@ def passed(subject: Subject) -> Iterator[Diagnostic]:
     for failure in subject.failures:
         if failure.code not in ABSENT and "moments" not in failure.values:
             yield failure
-    yield from subject.launched
+    yield from (each for _, selected in subject.launched for each in selected.problems)
     yield from limited(_relevant(subject), partial(_finished, subject))
 
 

@@ -15,6 +15,7 @@ from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.dialects.ros_control.selection import Selection
 from cartwheel.errors import Diagnostic, Origin
 
 ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})
@@ -41,8 +42,9 @@ class Subject:
     """Origins of elements that lost an unreadable child, and of their parents."""
     control: Sequence[tuple[Robot, ControlFile]] = ()
     """Controller files of each robot."""
-    launched: Sequence[Diagnostic] = ()
-    """Mistakes in the launch files that start the controllers."""
+    launched: Sequence[tuple[Robot, Selection]] = ()
+    """What launch files load for each robot with a controller manager; empty if the user states the
+    controller files."""
 
     @property
     def is_urdf(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
@@ -186,13 +187,7 @@ def _is_prefixed(refused: Diagnostic) -> bool:
 def _uncommanded(verdict: Verdict, tag: PluginTag) -> Diagnostic:
     """Why no controller of a manager commands a joint."""
     started = tuple(name for name in verdict.spawned if name in verdict.controllers)
-    message = "no file contains controllers for this controller manager"
-    if started and verdict.launch is not None:
-        names = ", ".join(f'"{name}"' for name in started)
-        message = f'"{verdict.launch.file.name}" starts only {names}, which commands no joint'
-    return devices.CONTROLLERS_NOT_FOUND.diagnostic(
-        message, origin=tag.origin, values={"started": started}
-    )
+    return uncommanded(tag, verdict.launch.file if verdict.launch is not None else None, started)
 
 
 def _contains(each: Diagnostic, controller: str) -> bool:

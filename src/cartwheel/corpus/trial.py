@@ -26,12 +26,12 @@ from cartwheel.corpus.verdict import Verdict
 from cartwheel.corpus.worlds import load_from_world
 from cartwheel.description import load_robot
 from cartwheel.description.launches import (
+    LaunchSearch,
     LaunchUse,
+    OwnLaunches,
     chosen,
     launches_near,
-    own_folder,
     own_launches,
-    root_of,
 )
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -70,8 +70,8 @@ def try_robot(
             or the files near the robot that `cartwheel run` would suggest, except those that need
             values from a launch file.
         standing: Simulation time without commands, s.
-        launches: Contents of launch files. None: the launch files in the robot's package and in the
-            packages beside it are read.
+        launches: Contents of launch files. None: the launch files in the robot's repository, in its
+            package and in the packages beside it are read.
         model: The name of the model to test, if the file is a world.
         folder: The folder of robots that contains the file. Files outside of it that the robot
             does not name are not used, nor those of other repositories in it.
@@ -80,11 +80,13 @@ def try_robot(
         The results, including errors in the description.
     """
     verdict = Verdict(file=file, model=model)
-    if launches is None:
-        near = folder or root_of(file)
-        launches = launches_near(near, package_path) if near is not None else ()
-    own = own_folder(file, folder)
-    launches = own_launches(file, launches, folder)
+    if launches is None and folder is not None:
+        launches = launches_near(folder, package_path)
+    find = LaunchSearch(package_path).of
+    if launches is not None:
+        find = partial(own_launches, uses=launches, within=folder)
+    own = find(file)
+    launches = own.launches
     use = chosen(file, launches)
     verdict = replace(verdict, launch=use)
     arguments = {**(use.arguments if use is not None else {}), **(arguments or {})}
@@ -103,7 +105,7 @@ def try_robot(
     verdict = _described(verdict, robot)
     spawned: tuple[str, ...] = ()
     if controllers is None:
-        selected = selection(robot, use, launches, within=own)
+        selected = selection(robot, use, launches, within=own.folder)
         controllers, spawned = selected.files, selected.names
         verdict = replace(verdict, observed=selected.problems)
     try:
@@ -134,7 +136,7 @@ def try_robot(
         verdict = replace(verdict, hindered=hindered(verdict, robot, alone))
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
-    findings = _Findings(file, arguments, package_path, controllers, is_inside)
+    findings = _Findings(file, arguments, package_path, controllers, find=find, is_inside=is_inside)
     verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
     return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
 
@@ -157,6 +159,8 @@ class _Findings:
         arguments: Mapping[str, str],
         package_path: Sequence[Path],
         controllers: Sequence[Path],
+        *,
+        find: Callable[[Path], OwnLaunches],
         is_inside: Callable[[Origin | None], bool] | None,
     ) -> None:
         self._is_inside = is_inside
@@ -166,6 +170,7 @@ class _Findings:
             arguments=arguments,
             package_path=package_path,
             controller_files=controllers,
+            launches=find,
         )
         self._found: tuple[Diagnostic, ...] | None = None
 

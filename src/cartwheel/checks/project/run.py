@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from cartwheel.checks.project.baseline import Baseline
 from cartwheel.checks.project.selection import Selection
 from cartwheel.checks.project.settings import Settings, settings_for
 from cartwheel.checks.project.suppressions import Suppressions
+from cartwheel.description.launches import LaunchSearch, OwnLaunches
 from cartwheel.dialects.plugin_files import using
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
@@ -87,9 +88,10 @@ def check(
     accepted = Baseline.read(accepted_file) if accepted_file is not None else None
     folder = Path(path).is_dir() and not (Path(path) / "model.config").is_file()
     files = workspace.descriptions(Path(path)) if folder else [Path(path)]
+    launches = LaunchSearch(package_path, Path(path) if folder else None).of
     with using(plugins):
         reports = tuple(
-            _report(file, arguments or {}, package_path, controllers, folder=folder)
+            _report(file, arguments or {}, package_path, controllers, launches, folder=folder)
             for file in files
         )
     return _result(str(path), reports, selection, accepted, strict=project.strict)
@@ -100,6 +102,7 @@ def _report(
     arguments: Mapping[str, str],
     package_path: Sequence[Path],
     controllers: Sequence[Path],
+    launches: Callable[[Path], OwnLaunches],
     *,
     folder: bool,
 ) -> Report:
@@ -109,6 +112,7 @@ def _report(
             arguments=arguments,
             package_path=package_path,
             controller_files=controllers,
+            launches=launches,
         )
     except DescriptionError as error:
         # Without a line, there is nothing to show for a single file except the error itself.

@@ -1,12 +1,15 @@
 """Reads launch files: the descriptions, xacro arguments and controller files that they name."""
 
+from cartwheel.description.launches.own import (
+    LaunchSearch,
+    OwnLaunches,
+    own_launches,
+    root_of,
+)
 from cartwheel.description.launches.search import (
     chosen,
     controllers_for,
     launches_near,
-    own_folder,
-    own_launches,
-    root_of,
     shared_parts,
     starters,
 )
@@ -19,14 +22,15 @@ from cartwheel.description.launches.start import (
 from cartwheel.description.launches.use import LaunchUse
 
 __all__ = [
+    "LaunchSearch",
     "LaunchStart",
     "LaunchUse",
     "LaunchedModel",
+    "OwnLaunches",
     "chosen",
     "controllers_for",
     "is_launch_file",
     "launches_near",
-    "own_folder",
     "own_launches",
     "read_launch",
     "root_of",

@@ -7,12 +7,10 @@ import itertools
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import cache
 from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
-from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.python_launch import read_python
@@ -32,8 +30,6 @@ _TRIED = 100
 """Maximum number of its arguments for which the folder of a description is searched."""
 _PUBLISHER = re.compile(r"state|broad", re.IGNORECASE)
 """Part of the names of controllers that only publish, such as ``joint_state_controller``."""
-_LEVELS = 4
-"""Number of folders above a description that are searched for its package."""
 
 
 def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[LaunchUse, ...]:
@@ -129,73 +125,6 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
 def _is_whole(name: str, words: Collection[str]) -> bool:
     """Whether one of the words is the whole name of a file, without its suffixes."""
     return any(re.fullmatch(re.escape(word) + r"(\.\w+)*", name) for word in words)
-
-
-def root_of(description: Path) -> Path | None:
-    """The folder whose launch files may start a description: that of its package and the packages
-    beside it; None outside of packages.
-    """
-    for folder in description.absolute().parents[:_LEVELS]:
-        if (folder / "package.xml").is_file() or (folder / "manifest.xml").is_file():
-            beside = [
-                each
-                for each in folder.parent.iterdir()
-                if each != folder and (each / "package.xml").is_file()
-            ]
-            return folder.parent if beside else folder
-    return None
-
-
-def own_folder(description: Path, within: Path | None = None) -> Path:
-    """The folder with the files of a description's author, in which unnamed files may be meant.
-
-    It is the repository. If this is unknown, it is the folder of `root_of`, or the subfolder of
-    `within`, in which the repositories may be side by side.
-
-    Args:
-        description: The description.
-        within: The folder that the user gave. If it contains the package, the result is in it.
-    """
-    file = description.absolute()
-    near = root_of(file) or file.parent
-    home = package_above(file.parent) or file.parent
-    repository = repository_of(file, within)
-    if within is None or not home.is_relative_to(given := within.absolute()):
-        return repository or near
-    if repository is not None or not near.is_relative_to(given):
-        return repository or given
-    return near if near == given else given / near.relative_to(given).parts[0]
-
-
-def own_launches(
-    description: Path, uses: Iterable[LaunchUse], within: Path | None = None
-) -> list[LaunchUse]:
-    """The launch files of a description's author.
-
-    They are in the same repository. If this is unknown, they are in none, and if a folder is given,
-    those that name no description are in `own_folder`.
-
-    Args:
-        description: The description.
-        uses: Contents of launch files.
-        within: The folder that the user gave.
-    """
-    repository, own = repository_of(description, within), own_folder(description, within)
-    near = [(each, each.file.absolute().is_relative_to(own)) for each in uses]
-    if repository is not None:
-        return [each for each, inside in near if inside]
-
-    @cache
-    def is_loose(folder: Path) -> bool:
-        """Whether the files in a folder are in no repository; many launch files are in one."""
-        return repository_of(folder / description.name, within) is None
-
-    return [
-        each
-        for each, inside in near
-        if (within is None or each.description is not None or inside)
-        and is_loose(each.file.absolute().parent)
-    ]
 
 
 def chosen(description: Path, uses: Iterable[LaunchUse]) -> LaunchUse | None:

@@ -66,6 +66,8 @@ class Selection:
     problems: tuple[Diagnostic, ...] = ()
     """Why files that the launch file loads for these controllers cannot be read, and which
     controllers are not started."""
+    launch: Path | None = None
+    """The launch file that starts the controllers."""
 
 
 def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -> Selection:
@@ -147,7 +149,8 @@ def selection(
     reported = _undefined(robot, starting, within)
     idle = () if starting is None else starting.loaded
     problems = (*unreadable, *reported, *_only_loaded(starting))
-    return Selection(files=files, names=names, idle=idle, problems=problems)
+    launch = None if starting is None else starting.file
+    return Selection(files=files, names=names, idle=idle, problems=problems, launch=launch)
 
 
 def _unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnostic]:

@@ -21,7 +21,7 @@ _SHOWN = 3
 def undriven_joints(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         description = robot.description
-        if description.static or any(map(_may_drive, description.plugins)):
+        if description.static or any(map(may_drive, description.plugins)):
             continue
         free = [joint for joint in description.joints if _is_free(joint)]
         if not free:
@@ -59,7 +59,7 @@ def _is_free(joint: Joint) -> bool:
     )
 
 
-def _may_drive(tag: PluginTag) -> bool:
+def may_drive(tag: PluginTag) -> bool:
     """Whether a plugin drives joints, or is unknown, so that it may."""
     plugin = plugin_named(tag.filename)
     return (

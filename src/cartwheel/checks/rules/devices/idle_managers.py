@@ -1,0 +1,57 @@
+"""Controller managers without a controller that commands joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from cartwheel.checks.controller_claims import (
+    commands_joints,
+    has_standard_hardware,
+    managers,
+    offers,
+    uncommanded,
+)
+from cartwheel.checks.controller_search import named_files
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.rule import rule
+from cartwheel.checks.rules.devices.undriven_joints import may_drive
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import devices as devices_codes
+from cartwheel.errors import Diagnostic
+
+
+@rule(devices_codes.CONTROLLERS_NOT_FOUND)
+def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
+    for robot, selected in subject.launched:
+        if selected.problems or _is_driven_otherwise(robot):
+            continue
+        files = [file for owner, file in subject.control if owner is robot]
+        controllers = [each for file in files for each in file.controllers]
+        defined = {each.name for each in controllers}
+        started = [
+            each for each in controllers if not selected.names or each.name in selected.names
+        ]
+        if (
+            # Other findings are about such files.
+            any(file.problem is not None for file in files)
+            or not defined.issuperset(selected.names)
+            or (not files and any(True for _ in named_files(robot)))
+            or any(commands_joints(each) for each in started)
+        ):
+            continue
+        for ros2 in (True, False):
+            if not has_standard_hardware(robot, ros2=ros2) or not offers(robot, ros2=ros2):
+                continue
+            for tag in managers(robot, ros2=ros2):
+                found = uncommanded(tag, selected.launch, selected.names)
+                # The controllers may be in a package that uses this one.
+                yield found if selected.names else replace(found, severity="info")
+
+
+def _is_driven_otherwise(robot: Robot) -> bool:
+    """Whether a plugin moves a robot that is no controller manager, or all joints are fixed."""
+    tags = [*managers(robot, ros2=True), *managers(robot, ros2=False)]
+    others = [each for each in robot.description.plugins if each not in tags]
+    movable = any(joint.type != "fixed" for joint in robot.joints.values())
+    return not movable or any(map(may_drive, others))

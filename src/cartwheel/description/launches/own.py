@@ -1,0 +1,126 @@
+"""The launch files of a description's author, which are in the same repository."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+
+from cartwheel.description.files.package_folders import package_above
+from cartwheel.description.files.repositories import repository_of
+from cartwheel.description.launches.search import launches_near
+from cartwheel.description.launches.use import LaunchUse
+
+_LEVELS = 4
+"""Number of folders above a description that are searched for its package."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OwnLaunches:
+    """The launch files of a description's author."""
+
+    folder: Path
+    """The folder with the author's files, in which unnamed files may be meant.
+
+    It is the repository. If this is unknown, it is the folder of `root_of`, or the subfolder of the
+    folder that the user gave, in which the repositories may be side by side.
+    """
+    launches: Sequence[LaunchUse]
+    """Those in the repository. If it is unknown, they are in none, and if the user gave a folder,
+    those that name no description are in `folder`."""
+
+
+class LaunchSearch:
+    """Reads the launch files of descriptions' authors; those of each folder are read once.
+
+    They are searched in the repository of a description. If this is unknown, they are searched in
+    the folder that the user gave, and near the description, in the folder of `root_of`.
+
+    Args:
+        package_path: Folders to search for packages first.
+        given: The folder that the user gave; None for a file.
+    """
+
+    def __init__(self, package_path: Sequence[Path] = (), given: Path | None = None) -> None:
+        self._given = given
+        self._read = cache(partial(launches_near, package_path=package_path))
+
+    def of(self, description: Path) -> OwnLaunches:
+        """The launch files of a description's author."""
+        repository = repository_of(description)
+        within = self._given if repository is None else None
+        near, far = root_of(description), repository or within
+        # The number of launch files that are read is limited, so the nearest come first.
+        uses = [] if near is None else [*self._read(near)]
+        if far is not None and far != near:
+            outside = (
+                each
+                for each in self._read(far)
+                if near is None or not each.file.is_relative_to(near)
+            )
+            uses += outside
+        return _own(description, uses, repository, within)
+
+
+def own_launches(
+    description: Path, uses: Iterable[LaunchUse], within: Path | None = None
+) -> OwnLaunches:
+    """Those of some launch files that are from a description's author.
+
+    Args:
+        description: The description.
+        uses: Contents of launch files.
+        within: The folder that the user gave. If it contains the package of the description, only
+            files in it count.
+    """
+    return _own(description, uses, repository_of(description, within), within)
+
+
+def root_of(description: Path) -> Path | None:
+    """The folder whose launch files may start a description: that of its package and the packages
+    beside it; None outside of packages.
+    """
+    for folder in description.absolute().parents[:_LEVELS]:
+        if (folder / "package.xml").is_file() or (folder / "manifest.xml").is_file():
+            beside = [
+                each
+                for each in folder.parent.iterdir()
+                if each != folder and (each / "package.xml").is_file()
+            ]
+            return folder.parent if beside else folder
+    return None
+
+
+def _own(
+    description: Path, uses: Iterable[LaunchUse], repository: Path | None, within: Path | None
+) -> OwnLaunches:
+    """As `own_launches`, for the repository of the description."""
+    own = _folder(description.absolute(), repository, within)
+    near = [(each, each.file.absolute().is_relative_to(own)) for each in uses]
+    if repository is not None:
+        return OwnLaunches(folder=own, launches=[each for each, inside in near if inside])
+
+    @cache
+    def is_loose(folder: Path) -> bool:
+        """Whether the files in a folder are in no repository; many launch files are in one."""
+        return repository_of(folder / description.name, within) is None
+
+    found = [
+        each
+        for each, inside in near
+        if (within is None or each.description is not None or inside)
+        and is_loose(each.file.absolute().parent)
+    ]
+    return OwnLaunches(folder=own, launches=found)
+
+
+def _folder(file: Path, repository: Path | None, within: Path | None) -> Path:
+    """See `OwnLaunches.folder`."""
+    near = root_of(file) or file.parent
+    home = package_above(file.parent) or file.parent
+    if within is None or not home.is_relative_to(given := within.absolute()):
+        return repository or near
+    if repository is not None or not near.is_relative_to(given):
+        return repository or given
+    return near if near == given else given / near.relative_to(given).parts[0]
