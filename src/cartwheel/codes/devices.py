@@ -306,3 +306,9 @@ HARDWARE_WITHOUT_PLUGIN = Code(
     "warning",
     "no Gazebo plugin runs the hardware of <ros2_control>",
 )
+DERIVATIVE_GAIN_TOO_HIGH = Code(
+    "CW491",
+    "derivative-gain-too-high",
+    "warning",
+    "a derivative gain makes the velocity oscillate that a controller commands",
+)

@@ -49,6 +49,7 @@ _JOINTS = frozenset(
         devices.CONTROLLER_GAINS_MISSING,
         devices.CONTROLLER_GAIN_TOO_LOW,
         devices.CONTROLLER_UNDAMPED,
+        devices.DERIVATIVE_GAIN_TOO_HIGH,
         devices.JOINT_CLAIMED_TWICE,
         running.JOINT_DRIVEN_TWICE,
     }

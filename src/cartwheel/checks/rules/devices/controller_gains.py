@@ -102,6 +102,40 @@ def gains_too_low(subject: Subject) -> Iterator[Diagnostic]:
                         yield from gain_too_low(robot, joint, given.p, origin)
 
 
+@rule(devices_codes.DERIVATIVE_GAIN_TOO_HIGH)
+def derivative_gains_too_high(subject: Subject) -> Iterator[Diagnostic]:
+    """Derivative gains of at least 1 for commanded velocities.
+
+    At each update, the controller commands ``v' = p e - d v`` for a position error e, and the joint
+    turns at once. With the update period h, e changes by -h v'. The roots of ``z² - (1 - p h - d) z
+    - d = 0`` are within the unit circle if ``d < 1 - p h / 2``, so never if d is at least 1.
+    """
+    for controller in used_controllers(subject):
+        interfaces: dict[str, set[str]] = {}
+        for claim in claims(controller):
+            interfaces.setdefault(claim.joint, set()).add(claim.interface)
+        opened = controller.value("open_loop_control")
+        if not _POSITIONS.search(controller.kind) or (
+            opened is not None and opened.text.strip().lower() == "true"
+        ):
+            continue
+        for joint, kinds in interfaces.items():
+            for row in table(controller, "gains") if kinds == {"velocity"} else ():
+                value = controller.value(f"{row.names[0].replace('{joint}', joint)}/d")
+                if value is None or value.number is None or value.number < 1.0:
+                    continue
+                yield devices_codes.DERIVATIVE_GAIN_TOO_HIGH.diagnostic(
+                    f'with a derivative gain of {value.number:g}, joint "{joint}" oscillates: '
+                    f'controller "{controller.name}" commands its velocity, and each command is '
+                    f"about -{value.number:g} times the one before",
+                    values={"controller": controller.name, "joint": joint, "d": value.number},
+                    origin=value.origin,
+                    mark=value.text,
+                    hint="Use a gain well below 1, such as 0: a joint with velocity commands needs "
+                    "no derivative gain.",
+                )
+
+
 def _of_controller(robot: Robot, controller: Controller) -> Iterator[Diagnostic]:
     """The gains of a controller with an effort output that are too low."""
     ros1 = not controller.file.is_ros2
