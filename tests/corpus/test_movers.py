@@ -5,6 +5,7 @@ from tests.corpus.carts import cart, plugin, written
 from tests.corpus.test_rivals import MANAGER, managed
 
 from cartwheel.codes.devices import PLUGIN_UNKNOWN
+from cartwheel.codes.tags import TAG_IGNORED
 from cartwheel.corpus import try_robot
 
 OTHER = '<gazebo><plugin name="x" filename="{}"><target>person</target></plugin></gazebo>'
@@ -56,3 +57,53 @@ def test_controllers_that_are_only_loaded_are_not_why_unsupported_hardware_does_
 def test_what_measures_moves_no_robot(tmp_path, name):
     verdict = try_robot(written(tmp_path, cart(), OTHER.format(name)), standing=1.0)
     assert not verdict.should_move
+
+
+@pytest.mark.parametrize(
+    ("tags", "moves"),
+    [
+        ("<traj_x>cos(t)</traj_x>", True),
+        ("<trajectory>circle</trajectory>", True),
+        ("<waypoints>0 0 1 1</waypoints>", True),
+        ("<path><point>0 0</point></path>", True),
+        ("<linear_velocity>1</linear_velocity>", True),
+        ("<path>maps/office.yaml</path>", False),
+        ("<config_path>1</config_path>", False),
+    ],
+)
+def test_an_unsupported_plugin_with_a_route_moves_a_model_without_joints(tmp_path, tags, moves):
+    plugin = f'<gazebo><plugin name="x" filename="libown_thing.so">{tags}</plugin></gazebo>'
+    box = (
+        '<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+        '<collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+    )
+    path = tmp_path / "robot.urdf"
+    path.write_text(f'<robot name="robot">{box}{plugin}</robot>')
+    verdict = try_robot(path, standing=0.5)
+    assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN] * moves
+    assert verdict.outcome == ("unknown" if moves else "good")
+
+
+@pytest.mark.parametrize(
+    ("name", "tags", "moves"),
+    [
+        ("libmy_quadcopter.so", "", True),
+        ("libown_thing.so", "<yawGain>2</yawGain>", True),
+        ("libown_thing.so", "<bodyName>base</bodyName>", False),
+        ("libgazebo_ros_imu_sensor.so", "<gain>2</gain>", False),
+    ],
+)
+def test_a_plugin_of_an_ignored_element_of_a_model_is_a_fault_of_the_file(
+    tmp_path, name, tags, moves
+):
+    path = tmp_path / "model.sdf"
+    path.write_text(
+        '<sdf version="1.6"><model name="robot"><link name="base">'
+        "<inertial><mass>1</mass></inertial>"
+        '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link>'
+        f'<gazebo><plugin name="x" filename="{name}">{tags}</plugin></gazebo></model></sdf>'
+    )
+    verdict = try_robot(path, standing=0.5)
+    assert [each.code for each in verdict.faults] == [TAG_IGNORED] * moves
+    assert verdict.outcome == ("file" if moves else "good")
+    assert verdict.should_move == moves

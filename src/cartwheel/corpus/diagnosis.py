@@ -10,7 +10,7 @@ from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
 from cartwheel.corpus.fall_causes import cause_of_fall
 from cartwheel.corpus.faults import Fault, Test, coded, most_severe
-from cartwheel.corpus.movers import is_known, managers, moving_plugins
+from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_plugins
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -122,6 +122,8 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
             )
         if reason is not None:
             yield Fault(test="plugin", subject=short_name(tag.filename), reason=reason)
+    for name, reason in ignored_movers(description):
+        yield Fault(test="plugin", subject=name, reason=reason)
     refused = {
         each.values.get("controller"): each
         for each in said

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Set
 
+from cartwheel.codes.tags import TAG_IGNORED
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
+from cartwheel.errors import Diagnostic
 
 _MOVES = re.compile(
     r"drive|steer|drone|copter|planar_move|force_based_move|motor|mecanum|tricycle|kobuki|multi_wheel|thruster"
@@ -23,8 +25,14 @@ _REPORTS = re.compile(r"status|state|monitor|publisher|sensor|encoder|odom|wind"
 _TRAVELS = re.compile(r"follow|vehicle|navigat|patrol|waypoint|locomot|walk|driver", re.IGNORECASE)
 """Names of unsupported plugins that move something."""
 _MANAGER = re.compile(r"ros2?_control")
-_COMMANDS = re.compile(r"gain|force|torque|thrust|motor|rotor|cmd_?vel", re.IGNORECASE)
+_COMMANDS = re.compile(
+    r"gain|force|torque|thrust|motor|rotor|cmd_?vel|(?:^|_)traj(?:_|$|ector)|way_?point"
+    r"|^(?:linear|angular)_?velocity$",
+    re.IGNORECASE,
+)
 """Names of the tags of unsupported plugins that move something."""
+_ROUTE = re.compile(r"^(?:path|route)(?:_?points)?$", re.IGNORECASE)
+"""Names of tags that contain the points of a route; those of a file contain its name."""
 STEERED = re.compile(r"ackerman|(?<!skid)(?<!skid[-_])steer|tricycle|bicycle", re.IGNORECASE)
 """Names of plugins and types of controllers for bases that cannot turn in place."""
 
@@ -43,8 +51,9 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     """Plugins that should move the robot or its joints, without controller managers.
 
     An unsupported plugin also counts if its tags contain the name of a movable joint, if a tag is
-    named after gains, forces, motors or velocity commands, or if nothing else moves a robot with
-    wheels or with joints for controllers, unless its own name says that it only measures.
+    named after gains, forces, motors, velocity commands or trajectories, or if nothing else moves
+    a robot with wheels or with joints for controllers, unless its own name says that it only
+    measures.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
     waits = _should_move(robot) and not any(
@@ -74,6 +83,30 @@ def is_mover(filename: str) -> bool:
 def may_drive(filename: str, words: Set[str], joints: Set[str]) -> bool:
     """Whether a plugin is not supported, and the `words` in its tags name some of the `joints`."""
     return _may_move(filename) and not joints.isdisjoint(words)
+
+
+def ignored_movers(robot: RobotDescription) -> list[tuple[str, Diagnostic]]:
+    """Plugins that should move a robot, but are in an element that is ignored.
+
+    A plugin counts if its name or the tags in it say that it moves something, unless the robot has
+    the same plugin in a place where it is loaded.
+
+    Returns:
+        The short names of the plugins, each with the diagnostic of the ignored element.
+    """
+    loaded = {short_name(tag.filename) for tag in robot.plugins}
+    found: dict[str, Diagnostic] = {}
+    for each in robot.diagnostics:
+        names, tags = each.values.get("plugins", ()), each.values.get("parameters", ())
+        if each.code is not TAG_IGNORED or not isinstance(names, tuple):
+            continue
+        acts = isinstance(tags, tuple) and any(_COMMANDS.search(str(tag)) for tag in tags)
+        for filename in map(str, names):
+            name = short_name(filename)
+            moves = is_mover(filename) or (acts and _may_move(filename))
+            if moves and name not in loaded:
+                found.setdefault(name, each)
+    return list(found.items())
 
 
 def managers(robot: RobotDescription, *, jointless: bool = False) -> list[PluginTag]:
@@ -110,4 +143,12 @@ def _acts(element: Element, joints: set[str]) -> bool:
     """Whether the tags of an unsupported plugin contain a joint's name, or name a command."""
     parts = list(element.walk())
     words = {word for each in parts for word in each.text.split()}
-    return not joints.isdisjoint(words) or any(_COMMANDS.search(each.tag) for each in parts[1:])
+    return not joints.isdisjoint(words) or any(
+        _COMMANDS.search(each.tag) or (_ROUTE.search(each.tag) and not _names_file(each))
+        for each in parts[1:]
+    )
+
+
+def _names_file(tag: Element) -> bool:
+    """Whether the text of a tag is the name of a file or a topic, rather than numbers."""
+    return any(character.isalpha() for character in tag.text)

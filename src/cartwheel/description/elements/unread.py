@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from cartwheel.codes import tags as codes
 from cartwheel.description.elements import numbers
@@ -11,6 +11,8 @@ from cartwheel.errors import Diagnostic, Origin, Value
 
 _SHOWN = 3
 """Number of plugins that a message names."""
+_VALUES = 32
+"""Number of plugins, and of their tags, that a diagnostic lists for programs."""
 
 
 def unread(
@@ -49,7 +51,7 @@ def unread(
             yield _foreign(child.tag, child.origin)
             continue
         reason = known.get((node.tag, child.tag))
-        values = {"tag": child.tag, "parent": node.tag}
+        values: dict[str, Value] = {"tag": child.tag, "parent": node.tag}
         if reason is None and child.tag in node._asked_children:
             yield codes.TAG_REPEATED.diagnostic(
                 f"<{child.tag}> is repeated in <{node.tag}>, so only the first is used",
@@ -57,6 +59,11 @@ def unread(
                 values=values,
             )
             continue
+        plugins = _plugins_in(child)
+        if plugins:
+            tags = dict.fromkeys(each.tag for plugin in plugins for each in plugin.children)
+            values["plugins"] = tuple(_name_of(each) for each in plugins[:_VALUES])
+            values["parameters"] = tuple(tags)[:_VALUES]
         yield _ignored(
             f"<{child.tag}> in <{node.tag}>",
             child.origin,
@@ -64,19 +71,28 @@ def unread(
             meant=numbers.likely(child.tag, node._asked_children),
             form="<{}>",
             values=values,
-            lost=_plugins_in(child),
+            lost=_subject(plugins),
         )
 
 
-def _plugins_in(node: Node) -> str:
-    """The plugins in an element, as the subject of a sentence; empty if there is none."""
-    names, left = [], [node]
+def _plugins_in(node: Node) -> list[Node]:
+    """The plugins in an element."""
+    plugins, left = [], [node]
     while left:
         each = left.pop()
         left += reversed(each.children)
         if each.tag == "plugin" and each is not node:
-            name = each.attributes.get("filename") or each.attributes.get("name", "")
-            names.append(f'"{name}"')
+            plugins.append(each)
+    return plugins
+
+
+def _name_of(plugin: Node) -> str:
+    return plugin.attributes.get("filename") or plugin.attributes.get("name", "")
+
+
+def _subject(plugins: Sequence[Node]) -> str:
+    """Plugins as the subject of a sentence; empty if there is none."""
+    names = [f'"{_name_of(each)}"' for each in plugins]
     if len(names) > _SHOWN:
         names = [*names[:_SHOWN], f"{len(names) - _SHOWN} more"]
     if len(names) < 2:
