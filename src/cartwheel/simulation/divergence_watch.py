@@ -56,7 +56,6 @@ class Watch:
         self.due = self._next()
         for message in self._guard.check(origin_of):
             self._engine.report(world_codes.PHYSICS_WARNING.diagnostic(message))
-        self._guard.keep()
 
     def _next(self) -> int:
         """The next multiple of the interval."""

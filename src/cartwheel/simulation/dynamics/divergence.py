@@ -47,7 +47,7 @@ class Guard:
         self._counts = data.warning.number
         self.forget()
 
-    def keep(self) -> None:
+    def _keep(self) -> None:
         """Stores the current state for the dump."""
         self._states.append((self._data.time, self._qpos.copy(), self._qvel.copy()))
 
@@ -67,7 +67,7 @@ class Guard:
         self._seen.clear()
 
     def check(self, place_of: Callable[[str], Origin | None] = lambda _: None) -> list[str]:
-        """New engine warnings that do not stop the simulation; usually empty.
+        """Stores the state, and returns new engine warnings; usually none.
 
         Args:
             place_of: Returns the origin of a body's link. It is not stored, because it would keep
@@ -82,9 +82,16 @@ class Guard:
         if not size < _HUGE**2:
             raise self._diverged(place_of)
         counts = self._counts.tolist()
-        if not any(counts):
-            return []
-        messages = []
+        messages: list[str] = []
+        if any(counts):
+            self._look(counts, messages, place_of)
+        self._keep()
+        return messages
+
+    def _look(
+        self, counts: list[int], messages: list[str], place_of: Callable[[str], Origin | None]
+    ) -> None:
+        """Adds the messages of new engine warnings."""
         for kind, count in enumerate(counts):
             if count and kind not in self._seen:
                 if _WARNING(kind) in _UNSTABLE:
@@ -92,10 +99,9 @@ class Guard:
                 text = mujoco.mju_warningText(kind, int(self._data.warning[kind].lastinfo))
                 messages.append(str(text).strip())
             self._seen[kind] = count
-        return messages
 
     def _diverged(self, place_of: Callable[[str], Origin | None]) -> DivergedError:
-        self.keep()
+        self._keep()
         if self._dumps >= _DUMPS:
             return self._error("", place_of)
         self._dumps += 1
