@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -163,3 +164,15 @@ def test_thousands_of_parameters_in_a_launch_file_take_a_limited_time(package: P
     assert time.thread_time() - begin < _SECONDS
     assert text is not None
     assert len(text.splitlines()) == 60_000
+
+
+def test_nested_branches_with_many_variables_need_little_memory(package: Path) -> None:
+    names = "".join(f"v{n} = {n}\n" for n in range(20_000))
+    branches = "".join("  " * depth + "if unknown():\n" for depth in range(60))
+    peaks = []
+    for text in (names, f"{names}{branches}{'  ' * 60}v1 = 2\n"):
+        tracemalloc.start()
+        assert _is_read_to_the_end(package, "a.launch.py", text)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 1.2 * peaks[0]

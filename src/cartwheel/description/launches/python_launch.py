@@ -185,15 +185,17 @@ class _Reader:
         holds = self._holds(node.test)
         if holds is not None:
             return self.block(node.body if holds else node.orelse)
-        self._facts.effort.spend(2 * len(self._names))
-        before = self._names.copy()
+        before = self._names
+        first, last = before.within({}), before.within({})
+        self._names = first
         body = self.block(node.body)
-        first, self._names = self._names, before.copy()
+        self._names = last
         other = self.block(node.orelse)
-        if other == "return":
-            self._names = first
-        elif body != "return":
-            self._names.merge(before, first, node.lineno, self._facts.effort)
+        self._names = before
+        if "return" in (body, other):
+            before.add(first if other == "return" else last)
+        else:
+            before.add_one_of(first, last, node.lineno, self._facts.effort)
         # Of different ends, the one after which more may be executed.
         return min(body, other, key=_ENDS.index)
 
@@ -465,7 +467,6 @@ class _Reader:
         """
         if self._calls >= _DEEPEST_CALL:
             return NOTHING
-        self._facts.effort.spend(len(self._names))
         outside = self._names
         stated = function.args
         plain = [each.arg for each in (*stated.posonlyargs, *stated.args)]

@@ -19,12 +19,6 @@ class Uncertain:
     """The line of the value that is used."""
 
 
-class _Assigned(NamedTuple):
-    number: int
-    """Counts the assignments."""
-    line: int
-
-
 class Choice(NamedTuple):
     """A variable that has one of two values, depending on an unknown condition."""
 
@@ -36,74 +30,82 @@ class Choice(NamedTuple):
 class Variables:
     """The variables that are known at a place in a launch file, by name.
 
+    Those of a branch or function contain only what it assigns itself, so that many of them need
+    little memory.
+
     Args:
         values: Those that are known from the beginning.
+        outside: The variables around this place, which others of the same name hide.
     """
 
-    def __init__(self, values: Mapping[str, Any]) -> None:
+    def __init__(self, values: Mapping[str, Any], outside: Variables | None = None) -> None:
         self._values = dict(values)
-        self._assigned: dict[str, _Assigned] = {}
+        self._outside = outside
+        self._lines: dict[str, int] = {}
+        """The lines in which they were assigned."""
         self._choices: dict[str, Choice] = {}
 
-    def __len__(self) -> int:
-        return len(self._values)
-
     def __contains__(self, name: str) -> bool:
-        return name in self._values
+        return self._holder(name) is not None
 
     def get(self, name: str, default: Any = NOTHING) -> Any:
         """The value of a variable."""
-        return self._values.get(name, default)
+        holder = self._holder(name)
+        return default if holder is None else holder._values[name]
 
     def choice(self, name: str) -> Choice | None:
         """Where a variable gets its values if it may have several; None if it has one."""
-        return self._choices.get(name)
+        holder = self._holder(name)
+        return None if holder is None else holder._choices.get(name)
 
-    def assign(self, name: str, value: Any, line: int) -> None:
-        """Assigns a value in a line."""
+    def assign(self, name: str, value: Any, line: int, choice: Choice | None = None) -> None:
+        """Assigns a value in a line, or one of two values."""
         self._values[name] = value
-        last = self._assigned.get(name)
-        self._assigned[name] = _Assigned(0 if last is None else last.number + 1, line)
-        self._choices.pop(name, None)
-
-    def copy(self) -> Variables:
-        """The same variables, which change independently."""
-        return self.within({})
+        self._lines[name] = line
+        if choice is not None:
+            self._choices[name] = choice
+        else:
+            self._choices.pop(name, None)
 
     def within(self, given: Mapping[str, Any]) -> Variables:
-        """The variables in a function with these arguments."""
-        inner = Variables({**self._values, **given})
-        inner._assigned = {k: each for k, each in self._assigned.items() if k not in given}
-        inner._choices = {k: each for k, each in self._choices.items() if k not in given}
-        return inner
+        """The variables in a branch, or in a function with these arguments."""
+        return Variables(given, self)
 
-    def merge(self, before: Variables, first: Variables, line: int, effort: Effort) -> None:
-        """Adds what another branch assigns to the variables after the last branch.
+    def add(self, branch: Variables) -> None:
+        """Assigns what a branch assigns that is executed."""
+        for name, line in branch._lines.items():
+            self.assign(name, branch._values[name], line, branch._choices.get(name))
+
+    def add_one_of(self, first: Variables, last: Variables, line: int, effort: Effort) -> None:
+        """Assigns what two branches assign of which one is executed.
 
         A variable has the value of the last branch that assigns it. It has several values if those
         of the branches differ, or if only one branch assigns it and it had another value before.
 
         Args:
-            before: The variables before the branches.
-            first: Those after the other branch.
+            first: The variables in a branch.
+            last: Those in the other one.
             line: Line of the condition.
             effort: What the comparison of values may cost.
         """
-        effort.spend(len(self._assigned) + len(first._assigned))
-        for name in dict.fromkeys((*first._assigned, *self._assigned)):
-            old = before._assigned.get(name)
-            one, two = first._assigned.get(name), self._assigned.get(name)
-            if one == two == old:
-                continue
-            values = [each._values[name] for each in (first, self) if name in each._values]
-            places = [line if each is None else each.line for each in (one, two)]
-            if two == old:
-                self._values[name] = first._values[name]
-                self._assigned[name] = first._assigned[name]
-                places.reverse()
-            choice = first._choices.get(name) or self._choices.get(name)
+        effort.spend(len(first._lines) + len(last._lines))
+        for name in dict.fromkeys((*first._lines, *last._lines)):
+            used, other = (last, first) if name in last._lines else (first, last)
+            places = Choice(other._line(name, line), used._lines[name])
+            choice = used.choice(name) or other.choice(name)
             # A variable without another value is only used where the condition holds.
-            if len(values) > 1 and differ(values, effort):
-                choice = Choice(*places)
-            if choice is not None:
-                self._choices[name] = choice
+            if name in other and differ((other.get(name), used.get(name)), effort):
+                choice = places
+            self.assign(name, used.get(name), places.used, choice)
+
+    def _holder(self, name: str) -> Variables | None:
+        """The innermost variables with this name."""
+        found: Variables | None = self
+        while found is not None and name not in found._values:
+            found = found._outside
+        return found
+
+    def _line(self, name: str, default: int) -> int:
+        """The line in which a variable was assigned."""
+        holder = self._holder(name)
+        return default if holder is None else holder._lines.get(name, default)
