@@ -1,7 +1,12 @@
 """Joints are commanded as their plugins and controllers allow it."""
 
+import math
+from dataclasses import replace
+
 import pytest
 from tests.corpus.test_flights import tried
+
+from cartwheel.corpus.verdict import Reach
 
 BASE = (
     '<link name="base"><inertial><mass value="{mass}"/>'
@@ -193,3 +198,27 @@ def test_joints_that_meet_the_ground_together_are_commanded_alone(tmp_path):
     assert {spin.joint for spin in verdict.spins} == {"upper_joint", "lower_joint"}
     assert all(spin.commanded > 0 for spin in verdict.spins)
     assert verdict.good, verdict.faults
+
+
+@pytest.mark.parametrize(("reached", "arrives"), [(0.03, False), (0.06, True)])
+def test_a_short_way_is_not_within_the_tolerance_of_a_long_one(reached, arrives):
+    short = Reach(controller="c", joint="j", start=0.0, target=0.1, reached=reached, angular=True)
+    assert short.arrived == arrives
+    assert replace(short, target=0.2, reached=0.1).arrived
+
+
+def test_a_joint_with_a_short_way_has_more_time(tmp_path):
+    """Damping slows it down, so that it moves half of its way in 7 s."""
+    time_constant, way = 10.0, 0.1
+    part = link("turn", "base", kind="revolute", place="0 0 0.2", i=0.001)
+    part = part.replace("<limit", f'<dynamics damping="{10 * time_constant}"/><limit')
+    part = part.replace('velocity="100"', f'velocity="{way}"')
+    file = tmp_path / "turn.yaml"
+    kind = "effort_controllers/JointPositionController"
+    file.write_text(f"turn: {{type: {kind}, joint: turn_joint, pid: {{p: 10.0, i: 0.0, d: 0.0}}}}")
+    parts = BASE.format(mass=5), part, TRANSMISSION.format(name="turn"), CONTROL
+    (reach,) = tried(tmp_path, *parts, controllers=[file]).reaches
+    assert abs(reach.target - reach.start) == pytest.approx(way)
+    assert reach.arrived
+    moved = abs(reach.reached - reach.start) / way
+    assert moved == pytest.approx(1 - math.exp(-7.0 / time_constant), abs=0.05)

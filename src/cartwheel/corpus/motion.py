@@ -12,7 +12,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.loads import held_by, resistance
 from cartwheel.corpus.thrusters import has_thrusters, is_in_space
-from cartwheel.corpus.verdict import Reach, Stand
+from cartwheel.corpus.verdict import SHORT, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.geometry import Pose, rotate
@@ -24,6 +24,10 @@ _STEP, _SLIDE = 0.2, 0.02
 _TRAJECTORY = 2.0
 """Duration of a trajectory, s."""
 _REACHING = 5.0
+_LATER = 10.0
+"""Time after which a joint that still approaches its target must have reached it, s."""
+_APPROACHING = 0.02
+"""Part of the way that such a joint moves in one second."""
 _SLICE = 0.5
 """Interval of wall-clock checks, s."""
 
@@ -118,7 +122,12 @@ def _reached(
     start = positions(world, model)
     coupled = couplings_of(world, model)
     if sent:
-        world.run(_REACHING)
+        shortened = {
+            joint.name: (start[joint.name], target)
+            for _, joint, target in sent
+            if abs(target - start[joint.name]) < 0.99 * _step(joint)
+        }
+        _wait(world, model, shortened)
     return [
         Reach(
             controller=taker.owner,
@@ -137,6 +146,24 @@ def _reached(
         )
         for taker, joint, target in sent
     ]
+
+
+def _wait(world: World, model: Model, ways: Mapping[str, tuple[float, float]]) -> None:
+    """Waits until joints have reached their targets, and longer for those with limits.
+
+    A heavy joint whose speed is limited overshoots, or starts late. `ways` contains the start and
+    the target, rad or m, of the joints whose limits shorten their ways, by name.
+    """
+    world.run(_REACHING - 1.0)
+    for _ in range(1 + round(_LATER - _REACHING)):
+        before = {name: model.joint(name) for name in ways}
+        world.run(1.0)
+        if not any(
+            abs(left := target - model.joint(name)) > SHORT * (way := abs(target - begin))
+            and abs(left) < abs(target - before[name]) - _APPROACHING * way
+            for name, (begin, target) in ways.items()
+        ):
+            return
 
 
 def _elsewhere(joint: Joint, start: float, target: float) -> float:
@@ -198,7 +225,7 @@ def _targets(world: World, model: Model, joints: Sequence[Joint]) -> dict[str, f
 
 def target_of(joint: Joint, position: float) -> float:
     """A nearby position within the joint's limits."""
-    step = _SLIDE if joint.type == "prismatic" else _STEP
+    step = _step(joint)
     if joint.axis.velocity:
         # Half of the joint's limit leaves time to accelerate.
         step = min(step, 0.5 * joint.axis.velocity * _TRAJECTORY)
@@ -207,6 +234,11 @@ def target_of(joint: Joint, position: float) -> float:
         return position + step
     step = min(step, 0.25 * (upper - lower))
     return position + step if position < (lower + upper) / 2 else position - step
+
+
+def _step(joint: Joint) -> float:
+    """The usual way of a joint, rad or m."""
+    return _SLIDE if joint.type == "prismatic" else _STEP
 
 
 def _turned(one: Pose, other: Pose) -> float:

@@ -26,6 +26,8 @@ MOVED = 0.1
 """Smallest part of the commanded way or speed at which a joint moves."""
 ANGLE, LENGTH = 0.1, 0.01
 """rad and m; maximum error of a joint position: a PID with effort output yields to gravity."""
+SHORT = 0.5
+"""The same relative to the way, which limits shorten."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -161,7 +163,16 @@ class Reach:
     @property
     def arrived(self) -> bool:
         """Whether it moved, with a small error, or one that follows from gravity and the gains."""
-        return self.moved and abs(self.error) <= (ANGLE if self.angular else LENGTH) + self.sag
+        return self.moved and abs(self.error) <= self.limit + self.sag
+
+    @property
+    def limit(self) -> float:
+        """Maximum error without a load, rad or m."""
+        longest = ANGLE if self.angular else LENGTH
+        if self.start is None:
+            return longest
+        # Half of a way of 0.2 rad is not exactly 0.1 rad.
+        return min(longest, SHORT * abs(self.target - self.start) * (1.0 + 1e-9))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
