@@ -611,6 +611,27 @@ def test_the_turn_rate_of_a_skid_steered_robot_is_that_at_which_friction_torques
     assert not [each for each in report.findings if each.code is SKID_STEERING]
 
 
+def test_six_wheels_turn_slowest_if_those_in_the_middle_carry_nothing(bench):
+    """The slowest turn is that on the four outer wheels."""
+    names = {
+        "left": "front_left_joint rear_left_joint",
+        "right": "front_right_joint rear_right_joint",
+    }
+    body = ""
+    for side, y in (("left", TRACK / 2), ("right", -TRACK / 2)):
+        body += link(f"middle_{side}", WHEEL)
+        ends = "base_link", f"middle_{side}"
+        body += joint(f"middle_{side}_joint", ends, f"0 {y} 0", "0 1 0")
+        names[side] += f" middle_{side}_joint"
+    tags = {**MULTI, "leftJoints": names["left"], "rightJoints": names["right"]}
+    text = car(plugin("libdiffdrive_plugin_multi_wheel.so", **tags))
+    text = text.replace("<gazebo>", f"{body}<gazebo>")
+    (finding,) = [each for each in bench.report(text).findings if each.code is SKID_STEERING]
+    least = TRACK**2 / (TRACK**2 + BASE**2)
+    assert finding.values["least"] == pytest.approx(least, rel=1e-6)
+    assert finding.values["ratio"] > 1.2 * least
+
+
 def test_pairs_of_wheels_with_equal_separations_are_those_of_a_skid_steer(bench):
     pairs = (
         '<plugin name="p" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2'

@@ -59,10 +59,16 @@ def plugin(separation: float = TRACK, more: str = "") -> str:
     return _PLUGIN.format(separation=separation, more=more)
 
 
-def controlled(folder: Path, separation: float = TRACK) -> str:
-    """The hardware and the manager of a diff_drive_controller, whose file is in a folder."""
+def controlled(folder: Path, separation: float = TRACK, *, swapped: bool = False) -> str:
+    """The hardware and the manager of a diff_drive_controller, whose file is in a folder.
+
+    `swapped` is whether it takes the right wheel for the left one.
+    """
     file = folder / "base.yaml"
-    file.write_text(_CONTROLLER.format(separation=separation))
+    text = _CONTROLLER.format(separation=separation)
+    if swapped:
+        text = text.replace("[left_", "[x_").replace("[right_", "[left_").replace("[x_", "[right_")
+    file.write_text(text)
     return _HARDWARE.format(parameters=f"<parameters>{file}</parameters>")
 
 

@@ -1,8 +1,11 @@
 """The direction in which a base drives, by its wheels."""
 
 import pytest
+from tests.corpus.carts import cart, controlled, written
 
 from cartwheel.checks.robot import Robot
+from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED
+from cartwheel.corpus import try_robot
 from cartwheel.corpus.heading import FORWARD, heading, rolling
 from cartwheel.description import load_text
 
@@ -79,3 +82,15 @@ def test_mirrored_wheels_roll_in_one_direction():
 def test_wheels_that_are_not_parallel_have_no_common_direction():
     wheels = [("a", "0.2 0 -0.05", "1 0 0"), ("b", "0 0.2 -0.05", "0 1 0")]
     assert rolling(robot(*wheels), ["a_joint", "b_joint"]) == {}
+
+
+@pytest.mark.parametrize("swapped", [True, False])
+def test_a_robot_with_a_controller_may_face_backward(tmp_path, swapped):
+    """With the wheels on their own sides, only the axes are wrong."""
+    mirrored = cart().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>')
+    path = written(tmp_path, mirrored, controlled(tmp_path, swapped=swapped))
+    verdict = try_robot(path, standing=1.0)
+    (drive,) = verdict.drives
+    assert drive.measured == pytest.approx(0.2 if swapped else -0.2, rel=0.05)
+    wrong = dict.fromkeys(("drive", "turn"), WHEEL_AXIS_MISALIGNED)
+    assert {each.test: each.code for each in verdict.faults} == ({} if swapped else wrong)

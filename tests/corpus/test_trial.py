@@ -209,6 +209,15 @@ def test_a_plugin_that_measures_does_not_explain_why_a_base_drives_backward():
     assert cause_of_drive([drive, axis], -1.0, turning=False) is drive
 
 
+def test_axes_explain_a_base_that_moves_the_other_way_and_reversed_ones_only_that():
+    several = WHEEL_AXIS_MISALIGNED.diagnostic("one is reversed", values={"all": False})
+    every = WHEEL_AXIS_MISALIGNED.diagnostic("all are reversed", values={"all": True})
+    for turning in (False, True):
+        assert cause_of_drive([every], -1.0, turning=turning) is every
+        assert cause_of_drive([every], 0.4, turning=turning) is None
+        assert cause_of_drive([several], 0.4, turning=turning) is several
+
+
 def _explained(*findings, **results):
     robot = load_text('<robot name="r"><link name="a"/></robot>', file="r.urdf")
     verdict = Verdict(file=Path("r.urdf"), loaded=True, **results)
@@ -384,6 +393,29 @@ def test_a_wrong_separation_is_why_a_robot_with_sliding_wheels_turns_too_fast():
     assert cause_of_drive([skids], 4.6, turning=True) is skids
     slow = SKID_STEERING.diagnostic("slide", values={"ratio": 0.7, "stated": 0.2, "rolling": 2.0})
     assert cause_of_drive([slow, apart], 0.7, turning=True) is slow
+
+
+def test_wheels_that_slide_do_not_explain_why_a_robot_turns_too_fast():
+    skids = SKID_STEERING.diagnostic("slide", values={"ratio": 0.9, "stated": 0.5, "rolling": 1.2})
+    wide = WHEEL_DIAMETER_MISMATCH.diagnostic("d", values={"stated": 0.4, "measured": 0.5})
+    slim = WHEEL_DIAMETER_MISMATCH.diagnostic("d", values={"stated": 0.4, "measured": 0.38})
+    assert cause_of_drive([skids, wide], 1.16, turning=True) is wide
+    assert cause_of_drive([skids, wide], 0.7, turning=True) is not wide
+    # Without a wrong size, it is the separation that is stated for wheels that slide.
+    for found in ([skids], [skids, slim]):
+        cause = cause_of_drive(found, 1.1, turning=True)
+        assert cause.code is SKID_STEERING
+        assert cause.values["measured"] == pytest.approx(1.1)
+
+
+def test_wheels_that_slide_turn_a_robot_as_slowly_as_if_only_the_outer_ones_carried_it():
+    values = {"ratio": 0.75, "least": 0.48, "stated": 0.7, "rolling": 1.1}
+    skids = SKID_STEERING.diagnostic("slide", values=values)
+    cause = cause_of_drive([skids], 0.45, turning=True)
+    assert cause.values["measured"] == pytest.approx(0.45)
+    assert cause_of_drive([skids], 0.39, turning=True) is None
+    small = WHEEL_DIAMETER_MISMATCH.diagnostic("d", values={"stated": 0.123, "measured": 0.118})
+    assert cause_of_drive([skids, small], 0.395, turning=True).code is SKID_STEERING
 
 
 @pytest.mark.parametrize("predicted", [0.04, 1e-6, 0.0])

@@ -30,7 +30,8 @@ _STILL = 1e-6
 _PARALLEL = 0.95
 """Minimum cosine between parallel axles."""
 _AHEAD = 0.02
-"""Minimum distance between the axles of a caster and of the driven wheels, m."""
+"""Minimum distance between the axles of a caster and of the driven wheels, or of two axles of
+driven wheels, m."""
 _NEAR = 0.006
 """Maximum difference in height between parts that touch the ground, m."""
 _ALONG = 0.1
@@ -108,6 +109,7 @@ def turn_ratio(
     rim: float,
     *,
     dragged: bool = False,
+    outer: bool = False,
 ) -> float | None:
     """Turn rate of a base whose left and right wheels are driven for a turn of 1 rad/s.
 
@@ -118,6 +120,8 @@ def turn_ratio(
         axle: Direction of the axles in the model frame, a unit vector.
         rim: Speed of the rims, m/s.
         dragged: Whether other parts of the base slide, although no wheel has to.
+        outer: Whether only the driven wheels of the first and last axle carry the base. They slide
+            most, so it turns slowest. On uneven ground or bogies, this depends on details.
 
     Returns:
         None if nothing has to slide in a turn, or if the contacts are unknown.
@@ -142,6 +146,9 @@ def turn_ratio(
         )
         for joint in driven
     ]
+    if outer:
+        ends = min(each.x for each in contacts), max(each.x for each in contacts)
+        contacts = [each for each in contacts if min(abs(each.x - x) for x in ends) < _AHEAD]
     others = list(_others(robot, driven, wheels, axle, min(bottoms)))
     skids = any(each.friction[0] < each.friction[1] or dragged for each in others)
     spread = {round(each.x, 3) for each in contacts}

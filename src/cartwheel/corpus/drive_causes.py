@@ -68,7 +68,7 @@ def cause_of_drive(
     if cause is not None and cause.code is robot.SKID_STEERING and ratio > 1.0:
         # Wheels that slide slow the robot down, so it is the stated separation that is wrong.
         wrong = (each for each in found if each.code is robot.WHEEL_SEPARATION_MISMATCH)
-        return next(wrong, cause)
+        return next(wrong, _as_measured(cause, ratio))
     if cause is None or cause.code is not robot.SKID_STEERING or not 0.0 < ratio < 1.0:
         return cause
     return _as_measured(cause, ratio)
@@ -78,10 +78,11 @@ def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
     """The finding that wheels slide, with the measured turn rate if it is not the predicted one."""
     estimate, stated = (skids.values.get(name) for name in ("estimate", "stated"))
     predicted = skids.values.get("ratio", estimate)
-    if not isinstance(predicted, float) or abs(predicted - ratio) <= _DIFFERS:
+    if not isinstance(predicted, float) or abs(predicted - ratio) <= _DIFFERS * max(1.0, ratio):
         return skids
     values = skids.values
     hint = ""
+    more = "but the stated separation compensates for more than that, " if ratio > 1.0 else ""
     if isinstance(stated, float):
         factor = values.get("factor", 1.0)
         hint = compensation(
@@ -98,7 +99,7 @@ def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
         )
     return replace(
         skids,
-        message=f"{why}, so it turns at {ratio:.0%} of the commanded rate, as measured",
+        message=f"{why}, {more}so it turns at {ratio:.0%} of the commanded rate, as measured",
         hint=hint,
         values={**skids.values, "measured": ratio},
     )
@@ -117,8 +118,14 @@ def _cause(
         factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
         factors.pop(robot.CASTER_FRICTION, None)
     skids, slowest = factors.get(robot.SKID_STEERING, (None, 1.0))
-    if skids is not None and slowest < ratio < max(1.0, _rolling(skids)):
-        # Fewer wheels than predicted carry the robot, or the friction depends on the direction.
+    size = factors.get(robot.WHEEL_DIAMETER_MISMATCH, (None, 1.0))
+    if skids is not None and 1.0 + _TOO_FAST < ratio < size[1] * max(1.0, _rolling(skids)):
+        # Wheels that slide only slow the robot down.
+        return size[0] if size[1] > 1.0 + _TOO_FAST else skids
+    lowest = _least(skids, slowest) * min(1.0, size[1]) if skids is not None else slowest
+    if skids is not None and lowest < ratio < max(1.0, _rolling(skids)):
+        # Fewer or other wheels than predicted carry the robot, or the friction depends on the
+        # direction.
         return skids
     if skids is not None and slowest <= _STUCK and abs(ratio) < max(slowest, _DIFFERS):
         # The predicted part may be exactly 0.
@@ -151,7 +158,11 @@ def _cause(
     if 1.0 - _BRAKED < ratio < 1.0:
         # A caster may also brake a base that drives straight ahead.
         codes |= {robot.CASTER_FRICTION}
-    return most_severe(each for each in found if each.code in codes and not _only_measures(each))
+    return most_severe(
+        each
+        for each in found
+        if each.code in codes and not _only_measures(each) and (ratio < 0 or not _reverses(each))
+    )
 
 
 def _combined(factors: Mapping[Code, tuple[Diagnostic, float]], ratio: float) -> Diagnostic | None:
@@ -184,6 +195,11 @@ def _pulls(each: Diagnostic, ratio: float) -> bool:
     )
 
 
+def _reverses(each: Diagnostic) -> bool:
+    """Whether it is about wheels that all turn backwards, so that the base moves the other way."""
+    return each.code is robot.WHEEL_AXIS_MISALIGNED and each.values.get("all") is True
+
+
 def _only_measures(each: Diagnostic) -> bool:
     """Whether it is about a plugin that moves nothing, such as one that publishes joint states."""
     return each.code is running.PLUGIN_LEFT_OUT and reports(
@@ -195,6 +211,12 @@ def _follows(ratio: float, expected: float) -> bool:
     """Whether a measured ratio follows from a mistake, rather than from none."""
     error = abs(ratio - expected)
     return error <= _AGREES * abs(expected) and error < abs(ratio - 1.0)
+
+
+def _least(skids: Diagnostic, predicted: float) -> float:
+    """The lowest turn rate of wheels that slide, whichever of them carry the robot."""
+    least = skids.values.get("least")
+    return predicted if not isinstance(least, float) else min(predicted, least * (1.0 - _AGREES))
 
 
 def _rolling(skids: Diagnostic) -> float:

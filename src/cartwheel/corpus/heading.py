@@ -126,14 +126,14 @@ def _side(robot: Robot, forward: tuple[float, float]) -> float:
     """1 if the left wheels of the drives are to the left of this direction, -1 if they are to the
     right, and 0 if the drives are unknown.
     """
-    for drive in robot.drives:
+    for wheels in robot.sides:
         sides = [
             [
                 wheel_place(robot, robot.joints[name]).position
                 for name in side
                 if name in robot.joints
             ]
-            for side in (drive.left, drive.right)
+            for side in wheels
         ]
         if not all(sides):
             continue

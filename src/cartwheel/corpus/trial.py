@@ -11,6 +11,7 @@ from cartwheel.api import Model, World
 from cartwheel.checks.checking import check
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, driving, motion
+from cartwheel.corpus.controlled import controlled_sides
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flights import flights
@@ -226,6 +227,7 @@ def _moved(
     body = Robot(robot, None)
     stood = motion.stand(world, model, robot, standing)
     started = _controllers(world).started
+    body.controlled = controlled_sides(body, started)
     given_up: list[Diagnostic] = []
     if not stood.fixed:
         moving = stood.state == "moves"

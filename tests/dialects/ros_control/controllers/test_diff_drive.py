@@ -120,6 +120,30 @@ def test_wheels_of_a_robot_that_faces_y_turn_about_x(make, tmp_path, wrong):
         assert made.model.pose.y == pytest.approx(1.0, rel=0.05)
 
 
+@pytest.mark.parametrize("faces", ["backward", "forward", "mixed"])
+def test_a_robot_that_faces_backward_consistently_has_no_reversed_axes(make, tmp_path, faces):
+    """Its left wheel is on the other side as well, so it turns as commanded."""
+    urdf = cart(ROS1).replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>')
+    if faces == "mixed":
+        urdf = urdf.replace('<axis xyz="0 -1 0"/>', '<axis xyz="0 1 0"/>', 1)
+    left, right = ("left", "right") if faces == "forward" else ("right", "left")
+    base = {
+        "type": "diff_drive_controller/DiffDriveController",
+        "left_wheel": f"{left}_joint",
+        "right_wheel": f"{right}_joint",
+    }
+    made = Drive(make, tmp_path, urdf, {"base": base})
+    found = [each for each in made.world.diagnostics if each.code is robot.WHEEL_AXIS_MISALIGNED]
+    # Whether all axes are reversed decides whether it drives backward, or not at all.
+    every = {"backward": [], "forward": [True, True], "mixed": [False]}
+    assert [each.values["all"] for each in found] == every[faces]
+    if faces == "backward":
+        made.go(2.0, linear=0.5)
+        assert made.model.pose.x == pytest.approx(-1.0, rel=0.05)
+        made.go(2.0, angular=0.5)
+        assert made.model.pose.rpy[2] == pytest.approx(1.0, rel=0.05)
+
+
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_negative_multiplier_belongs_to_a_reversed_wheel(make, tmp_path, side):
     urdf = cart(ROS1)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from cartwheel.checks import nodes, plugin_tags
-from cartwheel.checks.robot import Robot
+from cartwheel.checks.robot import Drive, Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
@@ -40,7 +40,7 @@ _TOE, _CROOKED = 0.004, 0.2
 @rule(robot_codes.WHEEL_AXIS_MISALIGNED)
 def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
     yield from _mecanum(subject)
-    for robot, _, left, right in wheel_pairs(subject):
+    for robot, drive, left, right in wheel_pairs(subject):
         senses = axis_senses(robot, left, right)
         toward_left = axle_toward_left(robot, left, right)
         if toward_left is None:
@@ -57,18 +57,28 @@ def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
                     yield _not_across(robot, joint, toward_left)
                 continue
             yield _backwards(
-                robot, joint, "" if both else " and the other wheel's axis to the left"
+                robot,
+                joint,
+                "" if both else " and the other wheel's axis to the left",
+                every=both and _are_reversed(robot, drive),
             )
 
 
-def _backwards(robot: Robot, joint: Joint, more: str) -> Diagnostic:
-    """The diagnostic for a wheel whose axis points to the right."""
+def _are_reversed(robot: Robot, drive: Drive) -> bool:
+    """Whether the axes of all wheels of a drive point to the right of the robot."""
+    pairs = [placed_pair(robot, *names) for names in zip(drive.left, drive.right, strict=False)]
+    senses = [axis_senses(robot, *pair) for pair in pairs if pair is not None]
+    return all(each and max(each) < -CAMBER for each in senses)
+
+
+def _backwards(robot: Robot, joint: Joint, more: str, *, every: bool = False) -> Diagnostic:
+    """The diagnostic for a wheel whose axis points to the right, like `every` one or not."""
     node = nodes.child(robot.joint_node(joint.name), "axis")
     xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
     return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
         message=f'the wheel of joint "{joint.name}" turns backwards because its axis points to the '
         f"right of the robot{more}",
-        values={"joint": joint.name, "attribute": "backwards"},
+        values={"joint": joint.name, "attribute": "backwards", "all": every},
         origin=node.origin if node is not None else joint.origin,
         instead=f'xyz="{xyz}"' if node is not None else "",
         place="attribute" if node is not None else "",

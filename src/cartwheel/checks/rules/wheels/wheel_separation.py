@@ -97,12 +97,14 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
         ratio = turn_ratio(one.robot, left, right, axle, one.used / 2)
         if ratio is None or ratio == 0 or abs(ratio - 1.0) <= _LEAST_SKID:
             continue
+        least = turn_ratio(one.robot, left, right, axle, one.used / 2, outer=True)
         yield robot_codes.SKID_STEERING.diagnostic(
             message=f"the wheels slide when the robot turns, {_effect(one, ratio)}",
             values={
                 "tag": one.label,
                 "joint": one.first[0],
                 "ratio": ratio,
+                "least": ratio if least is None else min(least, ratio),
                 "stated": one.value,
                 "factor": one.factor,
                 "multiplier": one.multiplier,

@@ -23,7 +23,8 @@ from cartwheel.dialects.ros_control.controllers.odometry import (
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
     FramePrefixParameters,
-    check_axis,
+    check_axes,
+    faces_backward,
     frame_prefix,
     joint_place,
     leftward,
@@ -140,10 +141,13 @@ class DiffDriveController(Controller):
         )
         first_left, first_right = claims[0].joint, claims[len(left)].joint
         x, y, z = leftward(self.part.description, first_left, first_right)
-        for index, wheel in enumerate(claims):
+        joints = [each.joint for each in claims]
+        sides = joints[: len(left)], joints[len(left) :]
+        if not faces_backward(self.part.description, *sides):
             # A negative multiplier turns the wheels of a side in the other direction.
-            reversed_ = (left_factor if index < len(left) else right_factor) < 0
-            check_axis(self, wheel.joint, (-x, -y, -z) if reversed_ else (x, y, z))
+            senses = (left_factor,) * len(left) + (right_factor,) * len(right)
+            axes = [(x, y, z) if sense >= 0 else (-x, -y, -z) for sense in senses]
+            check_axes(self, dict(zip(joints, axes, strict=True)))
         if are_swapped(self.part.description, first_left, first_right):
             self.warn(
                 robot.WHEELS_SWAPPED,

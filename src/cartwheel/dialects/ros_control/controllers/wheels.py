@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ LEFT, RIGHT, UP = (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)
 """Rotation axes of wheels, of reversed wheels and of steering joints, in the robot's base frame."""
 _BEHIND = 1e-3
 """Distance of a steered wheel behind the driven axle, m."""
+_ALONG = 0.5
+"""Cosine between the axis of a wheel and the expected one, above which it points along it."""
 _SIDEWAYS = 0.2
 """Ratio of the distances of two wheels along y and x below which a robot faces along y."""
 
@@ -43,6 +46,39 @@ def leftward(description: RobotDescription, left: str, right: str) -> tuple[floa
     return (1.0, 0.0, 0.0) if along > 0 else (-1.0, 0.0, 0.0)
 
 
+def faces_backward(
+    description: RobotDescription, left: Sequence[str], right: Sequence[str]
+) -> bool:
+    """Whether a robot faces along negative x: its wheels are on the other sides, and all axes point
+    to the right.
+
+    Such a robot drives in its own forward direction and turns as commanded.
+
+    Args:
+        description: The robot.
+        left: Joints of the left wheels.
+        right: As many joints of the right wheels.
+    """
+    return all(
+        leftward(description, one, other) == LEFT
+        and joint_place(description, one)[1] < joint_place(description, other)[1]
+        and max(float(joint_axis(description, each)[1]) for each in (one, other)) < -_ALONG
+        for one, other in zip(left, right, strict=True)
+    )
+
+
+def check_axes(controller: Controller, wanted: Mapping[str, tuple[float, float, float]]) -> None:
+    """Warns about wheels whose axes are opposite to those that the drive expects.
+
+    Args:
+        controller: The drive.
+        wanted: Expected axes of all driven joints, by name, in the robot's base frame.
+    """
+    opposite = [name for name, axis in wanted.items() if _is_opposite(controller, name, axis)]
+    for name in opposite:
+        _report_axis(controller, name, wanted[name], every=len(opposite) == len(wanted))
+
+
 def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, float]) -> None:
     """Warns about a joint whose axis is opposite to the one that the drive expects.
 
@@ -51,18 +87,29 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
         joint: Joint of a wheel, or a steering joint.
         wanted: Expected axis, in the robot's base frame.
     """
+    if _is_opposite(controller, joint, wanted):
+        _report_axis(controller, joint, wanted)
+
+
+def _is_opposite(controller: Controller, joint: str, wanted: tuple[float, float, float]) -> bool:
+    return float(joint_axis(controller.part.description, joint) @ np.array(wanted)) < -_ALONG
+
+
+def _report_axis(
+    controller: Controller, joint: str, wanted: tuple[float, float, float], *, every: bool = False
+) -> None:
+    """Reports a joint with an opposite axis; `every` is whether those of all wheels are."""
     described = controller.part.description.joint(joint)
     assert described is not None
-    if float(joint_axis(controller.part.description, joint) @ np.array(wanted)) < -0.5:
-        index = max(range(3), key=lambda each: abs(wanted[each]))
-        sign, name = "-" if wanted[index] > 0 else "", "xyz"[index]
-        controller.warn(
-            robot.WHEEL_AXIS_MISALIGNED,
-            f'the axis of joint "{joint}" points along the robot\'s {sign}{name} axis, so '
-            "positive commands turn the wheel in the opposite direction",
-            at=described.origin,
-            values={"joint": joint, "axis": f"{sign}{name}"},
-        )
+    index = max(range(3), key=lambda each: abs(wanted[each]))
+    sign, name = "-" if wanted[index] > 0 else "", "xyz"[index]
+    controller.warn(
+        robot.WHEEL_AXIS_MISALIGNED,
+        f'the axis of joint "{joint}" points along the robot\'s {sign}{name} axis, so '
+        "positive commands turn the wheel in the opposite direction",
+        at=described.origin,
+        values={"joint": joint, "axis": f"{sign}{name}", "all": every},
+    )
 
 
 def check_steering(controller: Controller, joint: str, driven: str, *, backward: bool) -> None:
