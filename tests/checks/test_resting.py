@@ -311,6 +311,44 @@ def test_a_robot_on_two_wheels_is_reported(tmp_path):
     assert finding.values["outside"] == 0.0
 
 
+def pendulum(height):
+    """A tall body whose centre of mass is above or below the axle, and ahead of it by 0.01 m."""
+    mast = f'<box size="0.02 0.02 {abs(height) / 2}"/>'
+    return drive(link("mast", 5.0, mast) + joint("mast", "fixed", f"0.01 0 {height}"))
+
+
+@pytest.mark.parametrize(("height", "falls"), [(0.5, True), (-0.02, False)])
+def test_a_pendulum_on_two_wheels_does_not_rest_where_it_balances(tmp_path, height, falls):
+    """Both wheels have the same height: it does not tilt because of different heights."""
+    (finding,) = balanced(tmp_path, pendulum(height))
+    assert finding.values["outside"] == 0.0
+    assert "tilt" not in finding.values
+    assert finding.values["falls"] == falls
+
+
+@pytest.mark.parametrize(
+    ("name", "shape"), [("caster", f'<box size="{BALL} {BALL} {BALL}"/>'),
+                        ("knob", f'<sphere radius="{BALL / 2}"/>')]
+)  # fmt: skip
+def test_casters_that_do_not_reach_the_ground_are_named(tmp_path, name, shape):
+    more = "".join(
+        link(f"{name}_{end}", 0.1, shape) + joint(f"{name}_{end}", "fixed", f"{x} 0 -0.02")
+        for end, x in (("front", 0.09), ("rear", -0.09))
+    )
+    dome = link("dome", 0.01, f'<sphere radius="{BALL}"/>') + joint("dome", "fixed", "0 0 0.1")
+    (finding,) = balanced(tmp_path, drive(more, dome))
+    assert finding.values["casters"] == (f"{name}_front", f"{name}_rear")
+    # The bottom of each is half its size below its centre.
+    assert finding.values["height"] == pytest.approx(RADIUS - 0.02 - BALL / 2, abs=1e-6)
+
+
+def test_a_body_that_touches_the_ground_before_a_knob_has_no_casters(tmp_path):
+    """A slippery part near the axle never carries the robot."""
+    knob = link("knob", 0.01, '<sphere radius="0.003"/>') + joint("knob", "fixed", "0.02 0 0.02")
+    (finding,) = balanced(tmp_path, drive(knob))
+    assert "casters" not in finding.values
+
+
 def test_a_robot_on_two_wheels_that_no_drive_names_is_reported(tmp_path):
     """A program balances it by efforts, perhaps."""
     text = drive()

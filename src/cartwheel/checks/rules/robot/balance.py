@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -12,16 +13,20 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
+    CAMBER,
+    lowest,
     passive_axle,
     wheel_axis,
     wheel_joints,
     wheel_links,
     wheel_middle,
+    wheel_radius,
 )
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.kinematics import center_of_mass
+from cartwheel.description.model import Joint, Link, Sphere
 from cartwheel.description.solids import Floats
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, Value
 
 _TOUCHES = 0.03
 """Maximum height of a supporting point above the lowest one, relative to the robot's size."""
@@ -32,6 +37,16 @@ _HIGH = 0.75
 """Height of links that do not touch the ground, relative to that of the robot."""
 _TILTED = 0.1
 """Smallest angle of a robot that is reported to be tilted, rad."""
+_CASTER = re.compile(r"cast[eo]r|ball", re.IGNORECASE)
+_SLIPPERY = 0.1
+"""Largest friction coefficient of a part that is meant to slide."""
+_SHOWN = 3
+"""Number of casters that a message names."""
+_EVEN = 0.001
+"""Difference of heights that is not mentioned, relative to the robot's size."""
+_LATER = 1.5
+"""Largest ratio of the angle at which a caster touches the ground to that of the first link: the
+body may touch the ground before casters that are too high."""
 
 
 @rule(robot_codes.UNBALANCED)
@@ -53,9 +68,8 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
         rest = rest_of(robot, [link.name for link in robot.description.links])
         outside = _outside(points, center, robot.size)
         if rest is not None:
-            yield from _tilted(robot, rest)
-            if outside <= _MARGIN * robot.size:
-                yield from _on_an_axle(robot, rest)
+            # On wheels alone, this is where the robot would balance, not where it comes to rest.
+            yield from _on_an_axle(robot, center, rest) or _tilted(robot, rest)
         elif outside > _MARGIN * robot.size:
             yield robot_codes.UNBALANCED.diagnostic(
                 message=f"the centre of mass is {1000 * outside:.3g} mm outside the area between "
@@ -65,7 +79,7 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
                 hint="Check whether all wheels and casters have a <collision> at the same height.",
             )
         else:
-            yield from _on_an_axle(robot, None)
+            yield from _on_an_axle(robot, center, None)
 
 
 def _lacks_support(robot: Robot) -> bool:
@@ -97,8 +111,14 @@ def _tilted(robot: Robot, rest: Rest) -> Iterator[Diagnostic]:
         )
 
 
-def _on_an_axle(robot: Robot, rest: Rest | None) -> Iterator[Diagnostic]:
-    """A robot that stands only on wheels with a common axle."""
+def _on_an_axle(robot: Robot, center: Floats, rest: Rest | None) -> list[Diagnostic]:
+    """A robot that stands only on wheels with a common axle; empty for another one.
+
+    Args:
+        robot: The robot.
+        center: Its centre of mass in the model frame, m, shape (3,).
+        rest: Where it balances or stands; None if no such place was found.
+    """
     joints = wheel_joints(robot)
     if not joints and rest is not None:
         # A program may balance the robot by efforts on single joints.
@@ -107,21 +127,112 @@ def _on_an_axle(robot: Robot, rest: Rest | None) -> Iterator[Diagnostic]:
     others = [name for name in robot.links if name not in wheels]
     height = rest.height(robot, others) if rest is not None else None
     if height is not None and height < _MARGIN * robot.size:
-        return
+        return []
     if len(joints) < 2 or not all(joint.child in robot.placed for joint in joints):
-        return
+        return []
     axis = wheel_axis(robot, joints[0])
     places = np.array([wheel_middle(robot, joint) for joint in joints])
     gaps = places - places[0]
     off = np.linalg.norm(gaps - np.outer(gaps @ axis, axis), axis=1)
-    if off.max() < _MARGIN * robot.size:
-        yield robot_codes.UNBALANCED.diagnostic(
-            message="the robot stands only on wheels with a common axle, so it pitches while it "
-            "drives, unless a program balances it",
-            values={"outside": 0.0},
-            origin=robot.description.origin,
-            hint="Add a caster, or start the program that balances the robot.",
+    if off.max() >= _MARGIN * robot.size:
+        return []
+    casters = _raised_casters(robot, others, joints[0])
+    normal = rest.normal if rest is not None else np.array([0.0, 0.0, 1.0])
+    falls = bool((center - places[0]) @ normal > 0.0)
+    if casters:
+        how = "tips onto a caster"
+    elif falls:
+        how = "falls over, unless a program balances it"
+    else:
+        how = "pitches while it drives, unless a program balances it"
+    message = f"the robot stands only on wheels with a common axle, so it {how}"
+    hint = "Add a caster, or start the program that balances the robot."
+    values: dict[str, Value] = {"outside": 0.0, "falls": falls}
+    if casters:
+        nearest = min(casters.values())
+        far = f"{1000 * nearest:.3g} mm"
+        even = max(casters.values()) <= nearest + _EVEN * robot.size
+        message += f": {_named(casters)} {far if even else f'at least {far}'} above the ground"
+        hint = f"Lower the casters by {far}, or raise the wheels."
+        values |= {"casters": tuple(sorted(casters)), "height": nearest}
+    return [
+        robot_codes.UNBALANCED.diagnostic(
+            message=message, values=values, origin=robot.description.origin, hint=hint
         )
+    ]
+
+
+def _named(casters: Mapping[str, float]) -> str:
+    """The lowest casters as the subject of a sentence, with a verb."""
+    names = [f'"{name}"' for name in sorted(casters, key=lambda name: (casters[name], name))]
+    if len(names) == 1:
+        return f"its caster {names[0]} is"
+    if len(names) > _SHOWN:
+        names = [*names[:_SHOWN], f"{len(names) - _SHOWN} more"]
+    return f"its casters {', '.join(names[:-1])} and {names[-1]} are"
+
+
+def _raised_casters(robot: Robot, links: Sequence[str], wheel: Joint) -> dict[str, float]:
+    """Heights above level ground, m, of the casters on which a robot tips that turns on its axle.
+
+    Args:
+        robot: The robot.
+        links: Its links apart from the wheels.
+        wheel: The joint of a wheel on the axle.
+    """
+    radius = wheel_radius(robot, wheel)
+    axis, axle = wheel_axis(robot, wheel), np.array(wheel_middle(robot, wheel))
+    ahead = np.cross(axis, (0.0, 0.0, 1.0))
+    if radius is None or np.linalg.norm(ahead) < CAMBER:
+        return {}
+    ahead /= np.linalg.norm(ahead)
+    tilts: dict[str, tuple[float, float]] = {}
+    for name in links:
+        clouds = [solid.placed(robot.links[name].pose) for solid in robot.collisions[name]]
+        if clouds:
+            points = np.concatenate(clouds) - axle
+            tilts[name] = _tilts(points @ ahead, -points[:, 2], radius)
+    found = {}
+    for side in range(2):
+        least = min((each[side] for each in tilts.values()), default=np.inf)
+        for name, each in tilts.items():
+            low = lowest(robot, name)
+            if each[side] <= _LATER * least < np.inf and low is not None:
+                found[name] = low - float(axle[2]) + radius
+    return {name: height for name, height in found.items() if _is_caster(robot.links[name])}
+
+
+def _tilts(ahead: Floats, below: Floats, radius: float) -> tuple[float, float]:
+    """Angles by which a link turns about an axle until a point touches the ground, rad.
+
+    Args:
+        ahead: Distances of its points ahead of the axle, m, shape (n,).
+        below: Distances of its points below the axle, m, shape (n,).
+        radius: Height of the axle above the ground, m.
+
+    Returns:
+        The angles to the front and to the back; infinite if nothing ever touches the ground there.
+    """
+    away = np.hypot(ahead, below)
+    reach = np.arccos(radius / np.maximum(away, radius))
+    angle = np.arctan2(ahead, below)
+    front, back = (
+        np.where((side * angle > 0) & (away > radius), side * angle - reach, np.inf).min()
+        for side in (1.0, -1.0)
+    )
+    return float(front), float(back)
+
+
+def _is_caster(link: Link) -> bool:
+    """Whether a link is named like a caster, or is a ball or slides without much friction."""
+    if _CASTER.search(link.name):
+        return True
+    slides = [
+        isinstance(each.shape, Sphere)
+        or (each.surface.mu1 is not None and each.surface.mu1 <= _SLIPPERY)
+        for each in link.collisions
+    ]
+    return bool(slides) and all(slides)
 
 
 def _outside(points: Floats, center: Floats, size: float) -> float:
