@@ -32,6 +32,37 @@ def test_a_plugin_named_after_following_moves_a_model_whose_wheels_do_not_turn(t
     assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
 
 
+@pytest.mark.parametrize(
+    ("name", "moves"),
+    [
+        ("libmove_ball.so", True),
+        ("libBallMover.so", True),
+        ("libmoving_box.so", True),
+        ("libSimMotion.so", True),
+        ("libmy_servo.so", True),
+        ("libactuator_plugin.so", True),
+        ("libmotion_sensor.so", False),
+        ("libmotion_capture.so", False),
+        ("libremove_model.so", False),
+        ("libmoveit_scene.so", False),
+    ],
+)
+def test_a_plugin_named_after_motion_moves_a_model_without_joints(tmp_path, name, moves):
+    box = cart().split('<link name="left">', 1)[0]
+    verdict = try_robot(written(tmp_path, box, OTHER.format(name)), standing=1.0)
+    assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN] * moves
+    assert verdict.outcome == ("unknown" if moves else "good")
+
+
+@pytest.mark.parametrize("more", ["", '<gazebo><plugin name="y" filename="libother.so"/></gazebo>'])
+def test_the_only_plugin_of_a_model_with_one_turning_joint_may_move_it(tmp_path, more):
+    """Of several, any may be about something else, and the joint that of a caster."""
+    one = cart().replace('type="continuous"', 'type="fixed"', 1)
+    path = written(tmp_path, one, OTHER.format("libown_thing.so"), more)
+    verdict = try_robot(path, standing=1.0)
+    assert [each.code for each in verdict.faults] == ([] if more else [PLUGIN_UNKNOWN])
+
+
 def test_unsupported_hardware_may_be_what_moves_an_arm(tmp_path):
     """Its transmissions are for controllers, but nothing that is supported runs them."""
     box = cart().replace('type="continuous"', 'type="revolute"')

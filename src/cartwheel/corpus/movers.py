@@ -22,7 +22,11 @@ _RECORDS = re.compile(r"(?:^|_)bag_plugin|record", re.IGNORECASE)
 """Names of plugins that only record what moves."""
 _REPORTS = re.compile(r"status|state|monitor|publisher|sensor|encoder|odom|wind", re.IGNORECASE)
 """Names of unsupported plugins without commands, although their tags contain joints or forces."""
-_TRAVELS = re.compile(r"follow|vehicle|navigat|patrol|waypoint|locomot|walk|driver", re.IGNORECASE)
+_TRAVELS = re.compile(
+    r"follow|vehicle|navigat|patrol|waypoint|locomot|walk|driver|servo|actuat"
+    r"|(?<!re)mov(?:e(?!it)|ing)|(?<!e)motion(?!_?(?:capture|detect))",
+    re.IGNORECASE,
+)
 """Names of unsupported plugins that move something."""
 _MANAGER = re.compile(r"ros2?_control")
 _COMMANDS = re.compile(
@@ -51,9 +55,9 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     """Plugins that should move the robot or its joints, without controller managers.
 
     An unsupported plugin also counts if its tags contain the name of a movable joint, if a tag is
-    named after gains, forces, motors, velocity commands or trajectories, or if nothing else moves
-    a robot with wheels or with joints for controllers, unless its own name says that it only
-    measures.
+    named after gains, forces, motors, velocity commands or trajectories, if its own name contains a
+    word such as "move" or "servo", or if nothing else moves a robot with wheels or with joints for
+    controllers, unless its own name says that it only measures.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
     waits = _should_move(robot) and not any(
@@ -129,9 +133,18 @@ def _may_move(filename: str) -> bool:
 
 
 def _should_move(robot: RobotDescription) -> bool:
-    """Whether several joints turn without limits, or the description lists joints to command."""
+    """Whether joints turn without limits, or the description lists joints to command.
+
+    A single joint counts if the robot has a single plugin: otherwise it may be that of a caster.
+    """
     listed = any(True for each in robot.transmissions for _ in each.find_all("joint"))
-    return listed or bool(robot.ros2_control) or sum(joint.turns for joint in robot.joints) > 1
+    turning = sum(joint.turns for joint in robot.joints)
+    return (
+        listed
+        or bool(robot.ros2_control)
+        or turning > 1
+        or (turning == 1 and len(robot.plugins) == 1)
+    )
 
 
 def reports(name: str) -> bool:
