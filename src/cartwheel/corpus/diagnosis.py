@@ -8,7 +8,7 @@ from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
-from cartwheel.corpus.fall_causes import cause_of_fall
+from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall
 from cartwheel.corpus.faults import Fault, Test, coded, most_severe
 from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_plugins
 from cartwheel.corpus.verdict import Verdict
@@ -73,6 +73,8 @@ def faults(
         yield Fault(test="simulate" if verdict.loaded else "load", reason=reason)
     if not verdict.loaded:
         return
+    if (unloaded := _unloaded(verdict, description)) is not None:
+        yield Fault(test="load", reason=unloaded)
     # Two plugins of a kind are one fault.
     held = bool([*_held_bases(verdict, description, findings)])
     missing = {
@@ -83,6 +85,29 @@ def faults(
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights
     yield from _measured(verdict, description, findings, None if moved else idle)
+
+
+def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | None:
+    """Why Gazebo does not load a robot for it: its root link has no mass.
+
+    A description without plugins and sensors that no launch file starts in Gazebo may be one for
+    other programs, in which links need no mass.
+    """
+    sensors = any(link.sensors for link in description.links)
+    started = verdict.launch is not None and verdict.launch.simulated
+    if not (verdict.movers or description.plugins or sensors or started):
+        return None
+    if coded(description.diagnostics, LEFT_OUT) is not None:
+        # The missing part may contain the mass.
+        return None
+    held = {joint.child for joint in description.joints}
+    for each in description.diagnostics:
+        links = each.values.get("links", ())
+        if each.code is robot.INERTIA_MISSING and isinstance(links, tuple):
+            roots = [name for name in links if name not in held]
+            if roots:
+                return each
+    return None
 
 
 def _unmanaged(

@@ -26,6 +26,8 @@ _STANDING = frozenset(
 )
 _ABSENT = frozenset({files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREADABLE})
 """Reasons why a shape is missing."""
+LEFT_OUT = frozenset({files.INCLUDE_ABSENT, files.MACRO_ABSENT})
+"""Reasons why a part of the robot is missing."""
 _FALLEN = 1.0
 """m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
 ground."""
@@ -50,6 +52,11 @@ def cause_of_fall(
     if lost is not None:
         return lost
     reasons = [each for each in found if _explains_fall(each)]
+    absent = coded(found, LEFT_OUT)
+    if absent is not None and any(each.code is robot.BASE_WITHOUT_COLLISION for each in reasons):
+        # The collisions may be in the part that was left out.
+        bodies = [each for each in reasons if each.code is robot.BASE_WITHOUT_COLLISION]
+        reasons = [absent, *(each for each in reasons if each not in bodies)]
     if stand.sunk > _FALLEN * max(1.0, stand.size):
         bottomless = coded(reasons, frozenset({robot.BASE_WITHOUT_COLLISION}))
         if bottomless is not None:
