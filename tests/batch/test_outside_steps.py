@@ -19,6 +19,7 @@ from tests.golden.adapter import World, controller_files, load_robot
 from tests.golden.commanding import PERIOD, Commands
 from tests.golden.subjects import ROBOTS
 from tests.golden.trial import Ears, resting_height, state
+from tests.world import test_mimics as mimics
 
 import cartwheel as cw
 from cartwheel.batch import abreast
@@ -144,6 +145,14 @@ def test_physics_of_cartwheel_is_refused(tmp_path, without_warp, text, feature):
     )
     with raises(WARP_UNSUPPORTED, feature=feature):
         batch(built, n=1, act={}, obs={"time": lambda world: world.time}, backend="warp")
+
+
+def test_followers_that_leave_their_limits_are_refused(without_warp):  # noqa: F811
+    with (
+        mimics.world(mimics.follower('lower="0" upper="1"', 'multiplier="-1"')) as world,
+        raises(WARP_UNSUPPORTED, feature="joints that follow others beyond their own limits"),
+    ):
+        WarpPhysics([world.session.simulation], "cpu")
 
 
 @pytest.mark.parametrize(

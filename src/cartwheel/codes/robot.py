@@ -240,3 +240,9 @@ WHEEL_FRICTION_OBLIQUE = Code(
     "warning",
     "the friction of a driven wheel is oblique to its rolling direction",
 )
+MIMIC_OUT_OF_LIMITS = Code(
+    "CW257",
+    "mimic-out-of-limits",
+    "warning",
+    "a joint mimics another one to positions that its own limits exclude",
+)

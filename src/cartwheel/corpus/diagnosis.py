@@ -45,6 +45,7 @@ _JOINTS = frozenset(
         robot.DAMPING_TOO_HIGH,
         robot.OVERLAPPING_COLLISIONS,
         robot.ROOT_NOT_HELD,
+        robot.MIMIC_OUT_OF_LIMITS,
         devices.EFFORT_LIMIT_TOO_LOW,
         devices.CONTROLLER_GAINS_MISSING,
         devices.CONTROLLER_GAIN_TOO_LOW,

@@ -413,6 +413,8 @@ class Mimic:
     joint: str
     multiplier: float = 1.0
     offset: float = 0.0
+    mutual: bool = False
+    """Whether both joints hold each other, as with a gear: also at the limits of the follower."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

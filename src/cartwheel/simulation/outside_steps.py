@@ -32,6 +32,8 @@ def physics_of_cartwheel(engine: Engine) -> Iterator[str]:
         yield "restitution"
     if engine.stepping.moved is not None:
         yield "models that are fixed to the world and move at a velocity"
+    if engine.stepping.followers is not None:
+        yield "joints that follow others beyond their own limits"
     if engine.directions is not None and engine.directions.active:
         yield "friction that depends on the direction"
     if engine.model.flg_surfacevel:

@@ -19,6 +19,7 @@ from cartwheel.world.entry import (
     Motor,
     scoped,
 )
+from cartwheel.world.mimics import add_mimics
 from cartwheel.world.shapes import pose_arguments
 
 _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
@@ -42,27 +43,13 @@ def add_requested(spec: mujoco.MjSpec, entry: ModelEntry, bodies: dict[str, Any]
         entry: The model with its requests.
         bodies: The model's bodies by link name.
     """
-    _add_mimics(spec, entry)
+    add_mimics(spec, entry)
     for motor in entry.motors.values():
         _add_motor(spec, entry, motor)
     for drive in entry.drives:
         _add_drive(spec, entry, bodies[drive.link], drive)
     for camera in entry.cameras:
         _add_camera(entry, bodies[camera.link], camera)
-
-
-def _add_mimics(spec: mujoco.MjSpec, entry: ModelEntry) -> None:
-    for joint in entry.description.joints:
-        mimic = entry.mimics.get(joint.name, joint.mimic)
-        if mimic is not None and joint.type != "fixed" and not entry.description.static:
-            joints.couple(
-                spec,
-                scoped(entry.name, joint.name, "mimic"),
-                scoped(entry.name, joint.name),
-                scoped(entry.name, mimic.joint),
-                ratio=mimic.multiplier,
-                offset=mimic.offset,
-            )
 
 
 def _add_motor(spec: mujoco.MjSpec, entry: ModelEntry, motor: Motor) -> None:

@@ -106,13 +106,16 @@ def couple(
     *,
     ratio: float,
     offset: float = 0.0,
+    clamped: bool = False,
 ) -> None:
     """Constrains follower = ratio * leader + offset, both with one degree of freedom.
 
     The engine uses the sum of both inverse inertias for the constraint, which determines its
     softness. Written for the joint that moves more, the constraint is never softer than intended.
+    A `clamped` follower always comes first, and the ratio and offset are stored a second time.
     """
-    if 0 < abs(ratio) < 1:
+    stored = (1.0, offset, ratio) if clamped else ()
+    if 0 < abs(ratio) < 1 and not clamped:
         follower, leader, offset, ratio = leader, follower, -offset / ratio, 1 / ratio
     spec.add_equality(
         name=name,
@@ -120,7 +123,7 @@ def couple(
         objtype=mujoco.mjtObj.mjOBJ_JOINT,
         name1=follower,
         name2=leader,
-        data=equality_data(offset, ratio),
+        data=equality_data(offset, ratio, *([0.0] * 3 if stored else ()), *stored),
         solref=list(STIFF_REFERENCE),
         solimp=list(STIFF_IMPEDANCE),
     )

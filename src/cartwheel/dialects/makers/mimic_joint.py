@@ -151,7 +151,7 @@ class Differential(Plugin[DifferentialParameters]):
     def configure(self) -> None:
         config = self.config
         _check_different(self, config.first, config.second)
-        mimic = Mimic(joint=config.first, multiplier=1.0, offset=0.0)
+        mimic = Mimic(joint=config.first, multiplier=1.0, offset=0.0, mutual=True)
         self.part.mimic(config.second, mimic, origin=self.tag.origin)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import mujoco
 
 from cartwheel.simulation.dynamics.carried import Carried
+from cartwheel.simulation.dynamics.followers import Followers
 from cartwheel.simulation.dynamics.moved import Moved
 from cartwheel.simulation.dynamics.restitution import Bounces
 from cartwheel.simulation.limits import too_many_contacts
@@ -29,6 +30,8 @@ class Stepping:
         self.bounces = Bounces(model, surfaces) if len(surfaces) > 1 else None
         carried = Carried(model)
         self.carried = carried if carried.possible else None
+        followers = Followers(model)
+        self.followers = followers if followers.any else None
         self.moved: Moved | None = None
         """Models that are fixed to the world and move at a velocity."""
 
@@ -42,6 +45,8 @@ class Stepping:
         Raises:
             SimulationError: There is not enough memory for the contacts.
         """
+        if self.followers is not None:
+            self.followers.apply(self._model, data)
         try:
             mujoco.mj_forward(self._model, data)
             if carries and self.carried is not None:
@@ -64,7 +69,8 @@ class Stepping:
             SimulationError: There is not enough memory for the contacts.
         """
         model, data = self._model, self._data
-        if self.bounces is not None or self.moved is not None or carries:
+        by_step = self.bounces is not None or self.moved is not None
+        if by_step or self.followers is not None or carries:
             for each in range(count):
                 if each or not forwarded:
                     self.forward(data, carries=carries)

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 import mujoco
 
+from cartwheel.geometry import Array
+from cartwheel.world.mimics import CLAMPED
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Coupling:
@@ -33,8 +36,8 @@ def couplings(
         Coupling(
             follower=names[follower],
             leader=names[leader],
-            ratio=float(values[1]),
-            offset=float(values[0]),
+            ratio=ratio,
+            offset=offset,
         )
         for kind, follower, leader, values, active in zip(
             model.eq_type.tolist(),
@@ -44,5 +47,12 @@ def couplings(
             data.eq_active.tolist(),
             strict=True,
         )
+        for offset, ratio in [_stated(values)]
         if kind == mujoco.mjtEq.mjEQ_JOINT and active and follower in names and leader in names
     ]
+
+
+def _stated(values: Array) -> tuple[float, float]:
+    """Offset and ratio of a constraint, also while a limit of the follower replaces its target."""
+    marked, offset, ratio = values[CLAMPED].tolist()
+    return (offset, ratio) if marked else (float(values[0]), float(values[1]))

@@ -11,6 +11,7 @@ from cartwheel.description.model import Joint, Link, RobotDescription
 from cartwheel.geometry import Pose, Vec3, cross, to_wxyz
 from cartwheel.simulation.engine import Engine
 from cartwheel.world.entry import ModelEntry
+from cartwheel.world.joints import limits_of
 
 
 def place_model(engine: Engine, entry: ModelEntry, pose: Pose, linear: Vec3, angular: Vec3) -> None:
@@ -97,7 +98,7 @@ def _carried(place: Pose, pose: Pose, linear: Vec3, angular: Vec3) -> Vec3:
 def with_mimics(
     description: RobotDescription, positions: Mapping[str, float], *, offsets: bool = True
 ) -> dict[str, float]:
-    """The positions, extended by joints that mimic them directly or indirectly.
+    """The positions, extended by joints that mimic them directly or indirectly, up to their limits.
 
     Args:
         description: The model.
@@ -105,13 +106,20 @@ def with_mimics(
         offsets: Whether to add the offsets of the positions.
     """
     found = dict(positions)
-    mimics = {joint.name: joint.mimic for joint in description.joints if joint.mimic is not None}
-    for _ in mimics:
-        for name, mimic in mimics.items():
-            if name not in positions and mimic.joint in found:
-                offset = mimic.offset if offsets else 0.0
-                found[name] = offset + mimic.multiplier * found[mimic.joint]
+    joints = [joint for joint in description.joints if joint.mimic is not None]
+    for _ in joints:
+        for joint in joints:
+            mimic = joint.mimic
+            if mimic is not None and joint.name not in positions and mimic.joint in found:
+                target = mimic.multiplier * found[mimic.joint]
+                found[joint.name] = _limited(joint, target + mimic.offset) if offsets else target
     return found
+
+
+def _limited(joint: Joint, position: float) -> float:
+    """The position nearest to a follower's target within its limits."""
+    bounds = limits_of(joint, joint.axis, follows=True)
+    return position if bounds is None else min(max(position, bounds[0]), bounds[1])
 
 
 def _stop(engine: Engine, entry: ModelEntry) -> None:
