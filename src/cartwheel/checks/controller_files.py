@@ -15,6 +15,7 @@ from cartwheel.description.launches.written import written_in
 from cartwheel.description.model import Element, RobotDescription
 from cartwheel.dialects.ros_control.files import read_parameters
 from cartwheel.dialects.ros_control.launch_arguments import launch_arguments, with_arguments
+from cartwheel.dialects.ros_control.launched.names import shared_space
 from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _MAX_BYTES = 1_000_000
@@ -152,7 +153,7 @@ class ControlFile:
             return tuple(self._of_ros2())
         # The file may hold a single controller, whose name is set by a launch file.
         one = self._controller(self.path.stem, self.root)
-        return (one,) if one is not None else tuple(self._of_ros1(self.root, ()))
+        return (one,) if one is not None else tuple(self._named())
 
     def words(self, *path: str) -> list[str]:
         """The texts of a list at a path, also in a namespace."""
@@ -203,16 +204,24 @@ class ControlFile:
         for node in _scalars(root):
             node.value = with_arguments(node.value, arguments)
 
-    def _of_ros1(self, node: Any, path: tuple[str, ...]) -> Iterator[Controller]:
+    def _named(self) -> Iterator[Controller]:
+        """ROS 1's controllers, with their names below the namespace that they share."""
+        found = list(self._of_ros1(self.root, ()))
+        space = shared_space([path for path, _ in found])
+        for path, node in found:
+            controller = self._controller("/".join(path[len(space) :]), node)
+            if controller is not None:
+                yield controller
+
+    def _of_ros1(self, node: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
         for key, value in pairs(node):
             if value.id != "mapping":
                 continue
-            name = key.value.strip("/").rpartition("/")[2]
-            controller = self._controller(name, value)
-            if controller is not None:
-                yield controller
+            inner = (*path, *(part for part in key.value.split("/") if part))
+            if self._controller("", value) is not None:
+                yield inner, value
             elif len(path) < _DEEPEST:
-                yield from self._of_ros1(value, (*path, name))
+                yield from self._of_ros1(value, inner)
 
     def _controller(self, name: str, node: Any) -> Controller | None:
         """Reads a mapping as a ROS 1 controller; None if it has no controller type."""

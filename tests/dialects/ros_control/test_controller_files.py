@@ -335,7 +335,7 @@ def test_a_launch_file_may_contain_the_parameters_itself(tmp_path):
     }
     stated = ControlFile(path=file, named=True).controllers
     assert [(each.name, each.type.node.start_mark.line + 1) for each in stated] == [
-        ("first", 4), ("second", 8), ("third", 12),
+        ("arm/first", 4), ("arm/second", 8), ("top/third", 12),
     ]  # fmt: skip
     file.write_text(INLINE.replace("joint: two", "joint: [two"))
     with pytest.raises(PluginError) as caught:

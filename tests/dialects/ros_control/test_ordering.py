@@ -6,7 +6,7 @@ from tests.dialects.ros_control.arms import beam, ros2_joint, ros2_plugin, ros2_
 
 from cartwheel.api import World
 from cartwheel.dialects.ros_control.files import ControllerEntry
-from cartwheel.dialects.ros_control.ordering import compete, in_order
+from cartwheel.dialects.ros_control.launched.ordering import compete, in_order
 
 GROUP = "position_controllers/JointGroupPositionController"
 

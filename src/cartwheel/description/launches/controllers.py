@@ -140,8 +140,11 @@ def _activated(words: Iterable[str]) -> Iterator[str]:
 
 
 def _names(words: Iterable[str]) -> Iterator[str]:
-    """The last parts of the names among words, such as those without unknown parts."""
-    return (word.rsplit("/", 1)[-1] for word in words if _CONTROLLER.fullmatch(word))
+    """The names of controllers among words, without those that have unknown parts.
+
+    ROS 1's names may be paths in the namespace of the manager, such as ``front/left/wheel``.
+    """
+    return (word.strip("/") for word in words if _CONTROLLER.fullmatch(word))
 
 
 def _manager_space(words: Sequence[str], space: str) -> str:

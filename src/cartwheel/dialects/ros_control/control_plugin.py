@@ -15,8 +15,8 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.controllers.mecanum import MecanumDriveController
 from cartwheel.dialects.ros_control.controllers.omni import OmniWheelDriveController
 from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
+from cartwheel.dialects.ros_control.launched.ordering import compete, in_order
 from cartwheel.dialects.ros_control.manager import ControllerManager
-from cartwheel.dialects.ros_control.ordering import compete, in_order
 from cartwheel.dialects.ros_control.robot import ControlledRobot, RobotSensor
 from cartwheel.dialects.ros_control.selection import launched
 from cartwheel.dialects.sdf.force_torque import read_joint_load

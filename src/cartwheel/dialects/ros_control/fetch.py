@@ -8,13 +8,10 @@ from typing import Any, ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
-from cartwheel.dialects.ros_control.files import (
-    ControllerEntry,
-    ControllerFiles,
-    ros1_entries,
-)
+from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces
+from cartwheel.dialects.ros_control.launched.names import ros1_entries
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import SMALLEST
@@ -100,7 +97,8 @@ class Fetch(ControlPlugin):
             for entry in ros1_entries(content, str(path)):
                 full = f"{entry.namespace}/{entry.name}".strip("/")
                 if wanted is None or full in wanted:
-                    yield entry
+                    space, _, name = full.rpartition("/")
+                    yield replace(entry, namespace=space, name=name)
 
     def _joints(self, entries: list[ControllerEntry]) -> Iterator[JointInterfaces]:
         """Yields the interfaces of all movable joints."""

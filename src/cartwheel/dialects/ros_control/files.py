@@ -204,28 +204,6 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
     return content
 
 
-def ros1_entries(content: Mapping[str, Any], source: str) -> list[ControllerEntry]:
-    """Returns the controllers in a rosparam file: mappings with a ``type``, nested or not."""
-    return list(_ros1_entries(content, (), source))
-
-
-def _ros1_entries(
-    content: Mapping[str, Any], path: tuple[str, ...], source: str
-) -> Iterator[ControllerEntry]:
-    for key, value in content.items():
-        if not isinstance(value, Mapping):
-            continue
-        parts = tuple(part for part in str(key).split("/") if part)
-        kind = value.get("type")
-        if isinstance(kind, str) and "/" in kind.replace("::", "/"):
-            *space, name = (*path, *parts)
-            yield ControllerEntry(
-                name=name, type=kind, values=value, namespace="/".join(space), source=source
-            )
-        elif len(path) < 4:
-            yield from _ros1_entries(value, (*path, *parts), source)
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros2File:
     """The parameters in one or more ros2_control files."""

@@ -11,12 +11,7 @@ from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros_control import steer_bot
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
-from cartwheel.dialects.ros_control.files import (
-    ControllerEntry,
-    ControllerFiles,
-    is_ros2,
-    ros1_entries,
-)
+from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles, is_ros2
 from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import (
@@ -25,6 +20,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     transmissions,
     unknown_joints,
 )
+from cartwheel.dialects.ros_control.launched.names import ros1_entries
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.services import Ros1ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
@@ -193,16 +189,15 @@ class RosControl(ControlPlugin):
                 origin=Origin(file=path),
                 hint="Pass the file that the launch file loads with rosparam.",
             )
-        entries = ros1_entries(content, path)
+        entries = ros1_entries(content, path, self.namespace)
         if not entries and steer_bot.PARAMETERS not in content:
             self.warn(
                 devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
                 "no parameter specifies a controller type, so no controller starts",
                 at=Origin(file=path),
             )
-        spaces = {entry.namespace for entry in entries}
         inner: Any = content
-        if len(spaces) == 1 and (space := spaces.pop()):
+        if entries and (space := entries[0].namespace):
             # A file for the whole parameter server contains the namespace itself.
             for name in space.split("/"):
                 inner = next(

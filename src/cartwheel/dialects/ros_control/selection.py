@@ -7,17 +7,13 @@ model, without these elements.
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import itertools
-import os
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cartwheel import yaml_text
-from cartwheel.codes.devices import CONTROL_ELSEWHERE, CONTROLLER_ONLY_LOADED, CONTROLLER_UNDEFINED
+from cartwheel.codes.devices import CONTROL_ELSEWHERE
 from cartwheel.description import load_robot
 from cartwheel.description.launches import (
     LaunchUse,
@@ -29,23 +25,19 @@ from cartwheel.description.launches import (
     starters,
 )
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.dialects.ros_control.files import for_robot, name_and_file, read_parameters
+from cartwheel.dialects.ros_control.files import for_robot, read_parameters
+from cartwheel.dialects.ros_control.launched.names import as_named, named_in
+from cartwheel.dialects.ros_control.launched.problems import only_loaded, undefined, unreadable
 from cartwheel.dialects.ros_control.suggestion import (
     commanding,
     is_controlled,
     lacks_controllers,
     suggested,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, Origin, PluginError
+from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 
 _SUFFIXES = frozenset({".sdf", ".world"})
 """Ends of the names of SDF files, which another one may follow, as in ``arena.world.xacro``."""
-_TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", ".world")
-"""Ends of the names of files that may contain parameters of controllers, also within a tag."""
-_MOST_TEXTS = 2000
-"""Maximum number of such files that are read."""
-_MOST_FOLDERS = 5000
-"""Maximum number of folders that are searched for them."""
 _MOST = 8
 """Maximum number of launch files that are considered."""
 _FOLDERS = (".", "urdf", "../urdf")
@@ -88,8 +80,8 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     starter = _starter(file, use, launches)
     loaded = () if starter is None else starter.controllers
     if not suggested(robot) and not suggested(robot, among=loaded):
-        problems = (*_undefined(robot, starter), *_only_loaded(starter))
-        idle = () if starter is None else starter.loaded
+        problems = (*undefined(robot, starter), *only_loaded(starter))
+        idle = () if starter is None else as_named(starter.loaded, ())
         return Selection(files=(), names=(), idle=idle, problems=problems)
     return selection(robot, use, launches)
 
@@ -100,7 +92,10 @@ def launched(robot: RobotDescription) -> tuple[str, ...]:
     folder = root_of(file)
     launches = () if folder is None else launches_near(folder)
     starter = _starter(file, chosen(file, launches), launches)
-    return () if starter is None else starter.spawned
+    if starter is None:
+        return ()
+    # A name may contain a part of the namespace.
+    return tuple(dict.fromkeys((*starter.spawned, *as_named(starter.spawned, ()))))
 
 
 def _starter(file: Path, use: LaunchUse | None, launches: Sequence[LaunchUse]) -> LaunchUse | None:
@@ -144,103 +139,14 @@ def selection(
         # The robot's own tags name the files.
         own = _starter(Path(robot.origin.file), use, launches)
         names = () if own is None else own.spawned
-    unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
+    names = named_in(names, files, robot)
+    lost = unreadable(starter.controllers, names) if starter is not None else ()
     starting = starter or _starter(Path(robot.origin.file), use, launches)
-    reported = _undefined(robot, starting, within)
-    idle = () if starting is None else starting.loaded
-    problems = (*unreadable, *reported, *_only_loaded(starting))
+    reported = undefined(robot, starting, within) if is_controlled(robot) else ()
+    idle = () if starting is None else named_in(starting.loaded, files, robot)
+    problems = (*lost, *reported, *only_loaded(starting))
     launch = None if starting is None else starting.file
     return Selection(files=files, names=names, idle=idle, problems=problems, launch=launch)
-
-
-def _unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnostic]:
-    """The errors in those of the files that contain the names of controllers."""
-    for path in paths:
-        try:
-            text = yaml_text.read(name_and_file(path)[1])
-        except (OSError, UnicodeDecodeError):
-            continue
-        held = tuple(name for name in names if f"{name}:" in text)
-        if held:
-            try:
-                read_parameters(path)
-            except PluginError as error:
-                found = error.diagnostic()
-                yield replace(found, values={**found.values, "controllers": held})
-
-
-def _undefined(
-    robot: RobotDescription, starter: LaunchUse | None, within: Path | None = None
-) -> Iterator[Diagnostic]:
-    """Controllers that a launch file starts, but that no file near it or the robot defines."""
-    folder = within or root_of(Path(robot.origin.file))
-    if starter is None or not starter.spawned or folder is None or not is_controlled(robot):
-        return
-    inside = starter.file.absolute().is_relative_to(folder)
-    roots = dict.fromkeys((folder, folder if inside else root_of(starter.file) or folder))
-    searched = [_definitions(root) for root in roots]
-    if not all(searched):
-        return
-    undefined = set(starter.spawned)
-    for path in itertools.chain(*searched):
-        if not undefined:
-            return
-        with contextlib.suppress(OSError, UnicodeDecodeError):
-            text = yaml_text.read(path)
-            undefined -= {name for name in undefined if _is_key(name, text)}
-    # Files of other packages are searched in the launch file's own package.
-    lost = ", ".join(f'"{path.name}"' for path in starter.absent)
-    for name in starter.spawned:
-        if name in undefined:
-            yield CONTROLLER_UNDEFINED.diagnostic(
-                f'"{starter.file.name}" starts the controller "{name}", but no file near it '
-                "contains its parameters, so it cannot be loaded",
-                origin=Origin(file=str(starter.file)),
-                values={"controller": name, "absent": tuple(map(str, starter.absent))},
-                hint=f"The launch file loads files that were not found: {lost}. They may be in "
-                "packages that are not installed."
-                if lost
-                else "",
-            )
-
-
-def _only_loaded(starter: LaunchUse | None) -> Iterator[Diagnostic]:
-    """Controllers that a launch file loads, but does not start."""
-    if starter is None:
-        return
-    for name in starter.loaded:
-        undecided = name in starter.undecided
-        yield CONTROLLER_ONLY_LOADED.diagnostic(
-            f'"{starter.file.name}" only loads the controller "{name}", so it does not command '
-            "joints until it is started",
-            severity="warning" if undecided else "info",
-            origin=Origin(file=str(starter.file)),
-            hint="Add --set-state active to the command." if undecided else "",
-            values={"controller": name},
-        )
-
-
-def _definitions(folder: Path) -> list[Path]:
-    """Files in a folder that may contain parameters of controllers, the likely ones first.
-
-    Empty if there are too many to read.
-    """
-    found: list[Path] = []
-    for count, (root, folders, names) in enumerate(os.walk(folder)):
-        folders[:] = sorted(name for name in folders if not name.startswith("."))
-        found += (Path(root, name) for name in sorted(names) if name.endswith(_TEXTS))
-        if count >= _MOST_FOLDERS or len(found) > _MOST_TEXTS:
-            return []
-    return sorted(found, key=lambda path: path.suffix not in (".yaml", ".yml"))
-
-
-def _is_key(name: str, text: str) -> bool:
-    """Whether a text contains a name before a colon, or as the namespace of a ``<rosparam>``."""
-    if name not in text:
-        return False
-    word = re.escape(name)
-    pattern = rf"{word}\s{{0,9}}[\"']?\s{{0,9}}:|\bns\s?=\s?[\"'][^\"'<>]{{0,200}}{word}/?[\"']"
-    return re.search(pattern, text) is not None
 
 
 def _is_complete(path: Path, robot: RobotDescription) -> bool:

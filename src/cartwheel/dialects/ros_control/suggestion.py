@@ -20,11 +20,11 @@ from cartwheel.dialects.ros_control.files import (
     moved_file,
     name_and_file,
     read_parameters,
-    ros1_entries,
     ros2_file,
     stated_path,
 )
 from cartwheel.dialects.ros_control.launch_arguments import texts
+from cartwheel.dialects.ros_control.launched.names import ros1_entries
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
 from cartwheel.dialects.tags import roles_of
 from cartwheel.errors import CartwheelError, Diagnostic

@@ -1,0 +1,113 @@
+"""Names of ROS 1's controllers: their paths below the namespace of the controller manager."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cartwheel.description.model import RobotDescription
+from cartwheel.dialects.ros_control.files import (
+    ControllerEntry,
+    for_robot,
+    is_ros2,
+    read_parameters,
+)
+from cartwheel.errors import PluginError
+
+
+def ros1_entries(
+    content: Mapping[str, Any], source: str, namespace: str = ""
+) -> list[ControllerEntry]:
+    """Returns the controllers in a rosparam file: mappings with a ``type``, nested or not.
+
+    The name of a controller is its path below the namespace of the manager, as in ROS, such as
+    ``front/left/wheel``. If the file contains none in this namespace, it is the path below the
+    namespace that all of them share. Controllers of another robot with equal names are left out.
+
+    Args:
+        content: The content of the file.
+        source: Its name.
+        namespace: The namespace of the controller manager; empty if it is unknown, or global.
+    """
+    found = list(_ros1_entries(content, ()))
+    own = tuple(part for part in namespace.split("/") if part)
+    inside = [path for path, _ in found if len(path) > len(own) and path[: len(own)] == own]
+    others = [path for path, _ in found if path not in inside] if own and inside else []
+    shared = own if own and inside else shared_space([path for path, _ in found])
+    spaces = dict.fromkeys(inside, own) | dict.fromkeys(others, shared_space(others))
+    entries: dict[str, ControllerEntry] = {}
+    for path, values in sorted(found, key=lambda each: each[0] in others):
+        space = spaces.get(path, shared) if others else shared
+        name = "/".join(path[len(space) :])
+        entry = ControllerEntry(
+            name=name, type=values["type"], values=values, namespace="/".join(space), source=source
+        )
+        entries.setdefault(name, entry)
+    return list(entries.values())
+
+
+def shared_space(paths: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """The namespace that contains all controllers with these paths."""
+    spaces = [path[:-1] for path in paths]
+    return tuple(parts[0] for parts in itertools.takewhile(_are_equal, zip(*spaces, strict=False)))
+
+
+def _are_equal(parts: Sequence[str]) -> bool:
+    return len(set(parts)) == 1
+
+
+def _ros1_entries(
+    content: Mapping[str, Any], path: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], Mapping[str, Any]]]:
+    """The paths and parameters of controllers."""
+    for key, value in content.items():
+        if not isinstance(value, Mapping):
+            continue
+        parts = tuple(part for part in str(key).split("/") if part)
+        kind = value.get("type")
+        if isinstance(kind, str) and "/" in kind.replace("::", "/"):
+            yield (*path, *parts), value
+        elif len(path) < 4:
+            yield from _ros1_entries(value, (*path, *parts))
+
+
+def as_named(names: Iterable[str], entries: Iterable[ControllerEntry]) -> tuple[str, ...]:
+    """Returns the names of the controllers that a spawner names.
+
+    A spawner may name them with a part of their namespace, or without a part of their own name if
+    its own namespace contains it. Names that no entry fits are returned without namespaces.
+    """
+    listed = list(entries)
+    known = {entry.name for entry in listed}
+    paths = {entry.name: f"{entry.namespace}/{entry.name}".strip("/") for entry in listed}
+    found: dict[str, None] = {}
+    for name in names:
+        plain = name.strip("/")
+        fitting = [
+            one
+            for one, path in paths.items()
+            if f"/{path}".endswith(f"/{plain}") or f"/{plain}".endswith(f"/{path}")
+        ]
+        found |= dict.fromkeys([plain] if plain in known else fitting or [plain.rpartition("/")[2]])
+    return tuple(found)
+
+
+def named_in(
+    names: Iterable[str], files: Iterable[Path], robot: RobotDescription
+) -> tuple[str, ...]:
+    """Returns the names of the controllers in files that a launch file names; see `as_named`."""
+    entries: list[ControllerEntry] = []
+    for path in files:
+        with contextlib.suppress(PluginError):
+            content = for_robot(read_parameters(path), path, robot)
+            entries += [] if is_ros2(content) else ros1_entries(content, str(path), _space(robot))
+    return as_named(names, entries)
+
+
+def _space(robot: RobotDescription) -> str:
+    """The namespace of a robot's controller manager that its tags state; empty if they do not."""
+    tags = (tag.element.find("robotNamespace") for tag in robot.plugins)
+    return next((each.text.strip() for each in tags if each is not None), "")
