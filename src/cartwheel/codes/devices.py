@@ -312,3 +312,9 @@ DERIVATIVE_GAIN_TOO_HIGH = Code(
     "warning",
     "a derivative gain makes the velocity oscillate that a controller commands",
 )
+PLUGIN_OF_OTHER_ROS = Code(
+    "CW492",
+    "plugin-of-other-ros",
+    "warning",
+    "a plugin exists only in the version of ROS for which the package is not built",
+)

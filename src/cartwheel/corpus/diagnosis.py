@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from cartwheel.checks.controller_claims import uncommanded
+from cartwheel.checks.other_ros import other_ros
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
@@ -200,7 +201,7 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
             each for each in said if each.code in _CONTROL and _concerns(each, tag)
         )
         if reason is None and not undefined:
-            reason = _uncommanded(verdict, tag)
+            reason = other_ros(Robot(description, None), tag) or _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 

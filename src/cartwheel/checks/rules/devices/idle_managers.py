@@ -13,6 +13,7 @@ from cartwheel.checks.controller_claims import (
     uncommanded,
 )
 from cartwheel.checks.controller_search import named_files
+from cartwheel.checks.other_ros import other_ros
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.undriven_joints import may_drive
@@ -44,6 +45,9 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
             if not has_standard_hardware(robot, ros2=ros2) or not offers(robot, ros2=ros2):
                 continue
             for tag in managers(robot, ros2=ros2):
+                if other_ros(robot, tag) is not None:
+                    # Its controllers do not start anyway.
+                    continue
                 found = uncommanded(tag, selected.launch, selected.names)
                 # The controllers may be in a package that uses this one.
                 yield found if selected.names else replace(found, severity="info")

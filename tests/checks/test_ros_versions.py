@@ -1,0 +1,86 @@
+"""Plugins that exist only in ROS 1 or only in ROS 2."""
+
+import pytest
+
+import cartwheel
+from cartwheel.codes.devices import CONTROLLERS_NOT_FOUND, PLUGIN_OF_OTHER_ROS
+from cartwheel.corpus import try_robot
+from cartwheel.dialects.catalogue import PLUGINS
+from cartwheel.dialects.ros_only import _REPLACEMENTS
+
+CATKIN = "<buildtool_depend>catkin</buildtool_depend>"
+AMENT = "<export><build_type>ament_cmake</build_type></export>"
+BODY = (
+    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<collision><geometry><box size="1 1 0.1"/></geometry></collision>'
+)
+ARM = (
+    f'<link name="base">{BODY}</link><link name="arm">{BODY.replace("0.1", "0.2")}</link>'
+    '<joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/>'
+    '<origin xyz="0 0 1"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="9" velocity="1"/>'
+    '</joint><transmission name="t"><type>transmission_interface/SimpleTransmission</type>'
+    '<joint name="shoulder"><hardwareInterface>hardware_interface/PositionJointInterface'
+    '</hardwareInterface></joint><actuator name="m"/></transmission>'
+)
+
+
+def robot(tmp_path, filename, stated, more=""):
+    folder = tmp_path / "repository" / "arm"
+    (folder / "urdf").mkdir(parents=True)
+    (tmp_path / "repository" / ".git").mkdir()
+    (folder / "package.xml").write_text(f"<package><name>arm</name>{stated}</package>")
+    path = folder / "urdf" / "arm.urdf"
+    plugin = f'<gazebo><plugin name="p" filename="{filename}">{more}</plugin></gazebo>'
+    path.write_text(f'<robot name="arm">{ARM}{plugin}</robot>')
+    return path
+
+
+def found(path):
+    return [each for each in cartwheel.check(path).findings if each.code is PLUGIN_OF_OTHER_ROS]
+
+
+@pytest.mark.parametrize(
+    ("filename", "stated", "ros"),
+    [
+        ("libgazebo_ros_control.so", AMENT, 2.0),
+        ("libgazebo_ros_control.so", "<buildtool_depend>ament_cmake</buildtool_depend>", 2.0),
+        ("libgazebo_ros_control.so", CATKIN, None),
+        ("libgazebo_ros_control.so", CATKIN + AMENT, None),
+        ("libgazebo_ros_control.so", f"<!-- {CATKIN} -->", None),
+        ("libgazebo_ros_control.so", f"{CATKIN}<!-- {AMENT} -->", None),
+        ("libgazebo_ros2_control.so", CATKIN, 1.0),
+        ("libgazebo_ros2_control.so", AMENT, None),
+        # In both versions
+        ("libgazebo_ros_diff_drive.so", AMENT, None),
+        ("libsomeones_own_control.so", AMENT, None),
+    ],
+)
+def test_a_plugin_of_the_other_version_is_reported(tmp_path, filename, stated, ros):
+    reported = found(robot(tmp_path, filename, stated))
+    assert [each.values["ros"] for each in reported] == ([] if ros is None else [ros])
+
+
+def test_a_plugin_that_the_repository_builds_is_not_reported(tmp_path):
+    path = robot(tmp_path, "libgazebo_ros_range.so", AMENT)
+    assert found(path)
+    other = tmp_path / "repository" / "plugins"
+    other.mkdir()
+    (other / "package.xml").write_text("<package><name>plugins</name></package>")
+    (other / "CMakeLists.txt").write_text("add_library(gazebo_ros_range SHARED src/range.cpp)")
+    assert not found(path)
+
+
+def test_a_manager_of_the_other_version_is_why_no_controller_starts(tmp_path):
+    path = robot(tmp_path, "libgazebo_ros_control.so", AMENT)
+    codes = {each.code for each in cartwheel.check(path).findings}
+    assert PLUGIN_OF_OTHER_ROS in codes
+    assert CONTROLLERS_NOT_FOUND not in codes
+    (fault,) = [each for each in try_robot(path, standing=0.5).faults if each.test == "controller"]
+    assert (fault.code, fault.source) == (PLUGIN_OF_OTHER_ROS, "file")
+
+
+def test_plugins_of_one_version_are_simulated_or_unknown():
+    """No name is misspelt: most of these are plugins that Cartwheel simulates."""
+    names = {name for each in _REPLACEMENTS.values() for name in each}
+    unknown = {"gazebo_ros_f3d", "gazebo_ros_prosilica", "gazebo_ros_triggered_camera"}
+    assert names - set(PLUGINS) <= unknown | {"gazebo_ros_triggered_multicamera"}
