@@ -141,7 +141,7 @@ ROBOT = """<?xml version="1.0"?>
     <parent link="arm"/>
     <child link="finger"/>
     <axis xyz="1 0 0"/>
-    <limit lower="0" upper="0.1" effort="5" velocity="2"/>
+    <limit lower="-0.1" upper="0.1" effort="5" velocity="2"/>
     <mimic joint="arm_joint" multiplier="0.1"/>
   </joint>
   <link name="finger">

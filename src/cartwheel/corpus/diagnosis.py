@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from cartwheel.checks.controller_claims import uncommanded
-from cartwheel.checks.other_ros import other_ros
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
@@ -15,6 +14,7 @@ from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_p
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.ros_only import other_ros
 from cartwheel.errors import Diagnostic
 
 _HEAVY = 1000.0
@@ -201,7 +201,7 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
             each for each in said if each.code in _CONTROL and _concerns(each, tag)
         )
         if reason is None and not undefined:
-            reason = other_ros(Robot(description, None), tag) or _uncommanded(verdict, tag)
+            reason = other_ros(description, tag) or _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 

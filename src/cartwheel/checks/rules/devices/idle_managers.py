@@ -13,12 +13,12 @@ from cartwheel.checks.controller_claims import (
     uncommanded,
 )
 from cartwheel.checks.controller_search import named_files
-from cartwheel.checks.other_ros import other_ros
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.undriven_joints import may_drive
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.dialects.ros_only import other_ros
 from cartwheel.errors import Diagnostic
 
 
@@ -45,7 +45,7 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
             if not has_standard_hardware(robot, ros2=ros2) or not offers(robot, ros2=ros2):
                 continue
             for tag in managers(robot, ros2=ros2):
-                if other_ros(robot, tag) is not None:
+                if other_ros(robot.description, tag) is not None:
                     # Its controllers do not start anyway.
                     continue
                 found = uncommanded(tag, selected.launch, selected.names)

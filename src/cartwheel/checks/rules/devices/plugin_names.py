@@ -9,6 +9,7 @@ from cartwheel.checks import edits, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.dialects.ros_only import other_ros
 from cartwheel.dialects.substitutes import substitute
 from cartwheel.errors import Diagnostic
 from cartwheel.similar_names import meant_one
@@ -49,6 +50,15 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 place="attribute" if near else "",
                 mark=tag.filename,
             )
+
+
+@rule(devices_codes.PLUGIN_OF_OTHER_ROS)
+def plugin_of_other_ros(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for tag, _ in robot.plugins():
+            found = other_ros(robot.description, tag)
+            if found is not None:
+                yield found
 
 
 def _plain_file(name: str) -> str:

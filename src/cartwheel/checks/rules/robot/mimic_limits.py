@@ -31,6 +31,10 @@ def mimic_limits(subject: Subject) -> Iterator[Diagnostic]:
             if low >= limits[0] - slack and high <= limits[1] + slack:
                 continue
             bounded = math.isfinite(low) and math.isfinite(high)
+            leader = robot.joints.get(mimic.joint)
+            if not bounded and (leader is None or leader.type != "continuous"):
+                # Its limits are missing, which other rules report.
+                continue
             where = f"is between {low:.4g} and {high:.4g}" if bounded else "has no limits"
             yield robot_codes.MIMIC_OUT_OF_LIMITS.diagnostic(
                 f'joint "{joint.name}" can follow "{mimic.joint}" only up to its own limits of '
