@@ -170,7 +170,10 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
         unread = next((each for each in verdict.observed if _contains(each, name)), None)
         if unread is not None:
             yield Fault(test="controller", subject=name, reason=unread)
-    if held or verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
+    apart = [each for each in verdict.observed if _is_misplaced(each)]
+    for each in apart:
+        yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
+    if apart or held or verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
         return
     if verdict.failure is not None and verdict.controllers:
         # The simulation stopped before the controllers were tested.
@@ -204,6 +207,11 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
             reason = other_ros(description, tag) or _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _is_misplaced(each: Diagnostic) -> bool:
+    """Whether a controller is started in another namespace than that of its parameters."""
+    return each.code is devices.CONTROLLER_UNDEFINED and "namespace" in each.values
 
 
 def _is_prefixed(refused: Diagnostic) -> bool:

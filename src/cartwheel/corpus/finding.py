@@ -16,7 +16,7 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
 from cartwheel.description.files.package_folders import package_above, package_name
 from cartwheel.description.files.source_folders import source_folders
-from cartwheel.description.launches.use import LaunchUse
+from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.variants import SUFFIXES
 from cartwheel.description.loading import open_description, understand
 from cartwheel.errors import DescriptionError

@@ -1,5 +1,6 @@
 """Reads launch files: the descriptions, xacro arguments and controller files that they name."""
 
+from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.own import (
     LaunchSearch,
     OwnLaunches,
@@ -19,7 +20,6 @@ from cartwheel.description.launches.start import (
     is_launch_file,
     read_launch,
 )
-from cartwheel.description.launches.use import LaunchUse
 
 __all__ = [
     "LaunchSearch",

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.repositories import repository_of
+from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.search import launches_near
-from cartwheel.description.launches.use import LaunchUse
 
 _LEVELS = 4
 """Number of folders above a description that are searched for its package."""

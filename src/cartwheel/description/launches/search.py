@@ -13,8 +13,9 @@ from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
+from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.python_launch import read_python
-from cartwheel.description.launches.use import Facts, LaunchUse, only_loaded
+from cartwheel.description.launches.use import Facts
 from cartwheel.description.launches.variants import beside
 from cartwheel.description.launches.xml_launch import read_xml
 
@@ -113,6 +114,8 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 loaded=only_loaded((name for _, name in facts.loaded), spawned),
                 undecided=frozenset(facts.undecided),
                 absent=tuple(facts.lost),
+                sought=tuple(dict.fromkeys(facts.sought)),
+                places=tuple(dict.fromkeys(facts.places)),
                 simulated=facts.simulated,
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,

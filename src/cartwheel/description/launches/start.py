@@ -16,9 +16,10 @@ from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
+from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.search import facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
-from cartwheel.description.launches.use import ABSENT, Facts, LaunchUse, only_loaded
+from cartwheel.description.launches.use import ABSENT, Facts
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.options import PACKAGE_PATH, WORLD
 from cartwheel.similar_names import meant, suggestion

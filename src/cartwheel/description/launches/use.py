@@ -1,4 +1,4 @@
-"""What a launch file says about a robot."""
+"""What is collected while a launch file is read."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import contextlib
 import os
 import re
 import shlex
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -51,46 +51,6 @@ _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LaunchUse:
-    """A robot description in a launch file, including what the launch file includes."""
-
-    file: Path
-    """The launch file."""
-    description: Path | None
-    """The description; None if the launch file only starts controllers."""
-    arguments: Mapping[str, str]
-    """Arguments of the xacro whose values are known."""
-    unknown: int = 0
-    """Number of arguments whose values are unknown."""
-    controllers: tuple[Path, ...] = ()
-    """YAML files that it loads, and launch files that contain parameters of controllers. A file
-    with a single controller, which a launch file loads into the namespace NAME, is
-    ``NAME=FILE``."""
-    spawned: tuple[str, ...] = ()
-    """Names of the controllers that it starts."""
-    loaded: tuple[str, ...] = ()
-    """Names of those that it loads, but does not start."""
-    undecided: frozenset[str] = frozenset()
-    """Those of them for which it may be a mistake: it does not state that they are inactive."""
-    absent: tuple[Path, ...] = ()
-    """YAML files that it loads and that do not exist."""
-    simulated: bool = False
-    """Whether it starts Gazebo or spawns a model."""
-    guessed: bool = False
-    """Whether an argument is the whole name of the description, which is not its default. It may
-    then be any file, also one that is not a robot."""
-    world: str = ""
-    """The world that it starts, as it is stated; empty if there is none."""
-    models: tuple[str, ...] = ()
-    """The names that it gives to the models that it spawns."""
-
-
-def only_loaded(loaded: Iterable[str], spawned: Collection[str]) -> tuple[str, ...]:
-    """The loaded controllers that no other command starts."""
-    return tuple(dict.fromkeys(name for name in loaded if name not in spawned))
-
-
 def _is_single(file: Path) -> bool:
     """Whether a YAML file contains the parameters of a single controller."""
     try:
@@ -124,6 +84,10 @@ class Facts:
     """The namespace of the group that is being read."""
     yamls: list[tuple[str, Path]] = field(default_factory=list)
     """Files with parameters of controllers, with the namespaces into which they are loaded."""
+    places: list[tuple[str, Path]] = field(default_factory=list)
+    """The same files, with the namespace `UNKNOWN` if it is uncertain."""
+    sought: list[tuple[str, str]] = field(default_factory=list)
+    """See `LaunchUse.sought`."""
     lost: list[Path] = field(default_factory=list)
     """Such files that do not exist."""
     spawned: list[tuple[str, str]] = field(default_factory=list)
@@ -341,7 +305,25 @@ class Facts:
             for each in command.files:
                 self.parameters(each, within=command.space)
 
-    def parameters(self, text: str, namespace: str = "", *, within: str | None = None) -> None:
+    def seek(self, words: list[str], space: str) -> None:
+        """Adds the controllers of a spawner of ROS 1 with these arguments, in this namespace."""
+        self.effort.spend(len(words))
+        if UNKNOWN in space or any(UNKNOWN in word for word in words):
+            return
+        command = by_spawner(words, space)
+        for name in command.started:
+            # A name that begins with a slash is global.
+            own = "" if f"/{name}" in words else command.space
+            self.sought.append((own, name))
+
+    def parameters(
+        self,
+        text: str,
+        namespace: str = "",
+        *,
+        within: str | None = None,
+        certain: bool = False,
+    ) -> None:
         """Adds a YAML file if it exists.
 
         Args:
@@ -349,6 +331,7 @@ class Facts:
             namespace: Namespace into which ROS 1 loads it. It is the name of the controller if the
                 file contains the parameters of a single one.
             within: Namespace of the node that loads it; None for that of the group.
+            certain: Whether the namespace is that of its parameters in ROS 1.
         """
         self.effort.spend(_LOOK)
         path = Path(text.strip())
@@ -358,6 +341,7 @@ class Facts:
             if re.fullmatch(r"\w+", name) and _is_single(path):
                 path, space = Path(f"{name}={path}"), space.rpartition("/")[0]
             self.yamls.append((space, path))
+            self.places.append((space if certain else UNKNOWN, path))
         elif UNKNOWN not in text and path.suffix in (".yaml", ".yml") and path not in self.lost:
             self.lost.append(path)
 
@@ -365,6 +349,7 @@ class Facts:
         """Adds a launch file that contains parameters of controllers itself."""
         if (place := (resolved(self.namespace, namespace.strip()), path)) not in self.yamls:
             self.yamls.append(place)
+            self.places.append((UNKNOWN, path))
 
     def include(
         self,

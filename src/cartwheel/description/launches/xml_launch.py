@@ -42,6 +42,7 @@ class _Reader:
         self._arguments = dict(given)
         self._facts = facts
         self._depth = depth
+        self._inside_node = False
 
     def group(self, node: Node) -> None:
         """Reads the elements of a launch file or of a ``<group>``."""
@@ -78,7 +79,10 @@ class _Reader:
             self._parameter(node)
         elif tag == "rosparam":
             if node.attributes.get("command", "load") == "load" and "file" in node.attributes:
-                facts.parameters(self._value(node, "file"), self._value(node, "ns"))
+                # In a node, they are parameters of this node.
+                certain = not self._inside_node and "param" not in node.attributes
+                space = self._value(node, "ns")
+                facts.parameters(self._value(node, "file"), space, certain=certain)
             elif node.attributes.get("command", "load") == "load" and has_controllers(node.text):
                 facts.written(self._path, self._value(node, "ns"))
         elif tag == "ros_gz_bridge":
@@ -99,8 +103,12 @@ class _Reader:
                     if child.tag == "remap" and self._holds(child)
                 },
             )
+            if kind == "type" and package == "controller_manager":
+                facts.seek(split(self._value(node, "args")), self._space(node))
+            outer, self._inside_node = self._inside_node, True
             with facts.within(self._space(node)):
                 self.group(node)
+            self._inside_node = outer
             for child in node.children if package in BRIDGES else ():
                 named = child.attributes.get("name") if child.tag == "param" else None
                 if named == "config_file" and self._holds(child):

@@ -27,10 +27,16 @@ from cartwheel.description.launches import (
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.files import for_robot, read_parameters
 from cartwheel.dialects.ros_control.launched.names import as_named, named_in
-from cartwheel.dialects.ros_control.launched.problems import only_loaded, undefined, unreadable
+from cartwheel.dialects.ros_control.launched.problems import (
+    misplaced,
+    only_loaded,
+    undefined,
+    unreadable,
+)
 from cartwheel.dialects.ros_control.suggestion import (
     commanding,
     is_controlled,
+    is_of_ros1,
     lacks_controllers,
     suggested,
 )
@@ -83,7 +89,8 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
         problems = (*undefined(robot, starter), *only_loaded(starter))
         idle = () if starter is None else as_named(starter.loaded, ())
         return Selection(files=(), names=(), idle=idle, problems=problems)
-    return selection(robot, use, launches)
+    # The user need not start this launch file, and here, the controllers work.
+    return selection(robot, use, launches, tolerant=True)
 
 
 def launched(robot: RobotDescription) -> tuple[str, ...]:
@@ -110,6 +117,7 @@ def selection(
     launches: Sequence[LaunchUse],
     *,
     within: Path | None = None,
+    tolerant: bool = False,
 ) -> Selection:
     """As `selection_near`, with launch files that have been read.
 
@@ -120,6 +128,8 @@ def selection(
         use: The launch file that starts the robot; None if there is none.
         launches: All launch files near the robot.
         within: A folder; files outside of it that no launch file names are not used.
+        tolerant: Whether controllers start although the launch file starts them in another
+            namespace than that of their parameters.
     """
     starter = controllers_for(Path(robot.origin.file), use, launches)
     named = suggested(robot, among=starter.controllers) if starter is not None else []
@@ -144,7 +154,12 @@ def selection(
     starting = starter or _starter(Path(robot.origin.file), use, launches)
     reported = undefined(robot, starting, within) if is_controlled(robot) else ()
     idle = () if starting is None else named_in(starting.loaded, files, robot)
-    problems = (*lost, *reported, *only_loaded(starting))
+    apart = tuple(misplaced(starting, launches)) if is_of_ros1(robot) else ()
+    if apart and not tolerant:
+        wrong = named_in((str(each.values["controller"]) for each in apart), files, robot)
+        names = tuple(name for name in names if name not in wrong)
+        files = files if names else ()
+    problems = (*lost, *reported, *apart, *only_loaded(starting))
     launch = None if starting is None else starting.file
     return Selection(files=files, names=names, idle=idle, problems=problems, launch=launch)
 

@@ -86,6 +86,11 @@ def is_controlled(robot: RobotDescription) -> bool:
     return any(_manager(tag) for tag in robot.plugins)
 
 
+def is_of_ros1(robot: RobotDescription) -> bool:
+    """Whether the robot has a controller manager of ROS 1."""
+    return any(_manager(tag) == ROS_CONTROL for tag in robot.plugins)
+
+
 def lacks_controllers(robot: RobotDescription) -> bool:
     """Whether the robot has a controller manager whose tag contains no existing file."""
     managers = [tag for tag in robot.plugins if _manager(tag)]

@@ -13,8 +13,10 @@ from pathlib import Path
 from cartwheel import yaml_text
 from cartwheel.codes.devices import CONTROLLER_ONLY_LOADED, CONTROLLER_UNDEFINED
 from cartwheel.description.launches import LaunchUse, root_of
+from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.model import RobotDescription
-from cartwheel.dialects.ros_control.files import name_and_file, read_parameters
+from cartwheel.dialects.ros_control.files import is_ros2, name_and_file, read_parameters
+from cartwheel.dialects.ros_control.launched.names import ros1_entries
 from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", ".world")
@@ -74,6 +76,76 @@ def undefined(
                 if lost
                 else "",
             )
+
+
+def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Iterator[Diagnostic]:
+    """Controllers that a launch file starts in another namespace than that of their parameters.
+
+    Only what the launch file certainly states counts, and only parameters that no launch file loads
+    into the namespace in which the controller manager looks for them.
+
+    Args:
+        starter: The launch file.
+        launches: All launch files near the robot.
+    """
+    if starter is None or not starter.sought or starter.absent:
+        return
+    own = _paths(starter)
+    missed = [each for each in starter.sought if own is not None and _full(*each) not in own]
+    if own is None or not missed:
+        return
+    known: set[str] = set()
+    for use in launches:
+        paths = _paths(use)
+        if paths is None:
+            return
+        known |= paths.keys()
+    for space, name in missed:
+        if (wanted := _full(space, name)) in known:
+            continue
+        found = next((path for path in own if path.endswith(f"/{name}")), None)
+        if found is None and space:
+            found = name if name in own else None
+        if found is None:
+            continue
+        file = own[found]
+        yield CONTROLLER_UNDEFINED.diagnostic(
+            f'"{starter.file.name}" starts the controller "{name}", whose controller manager looks '
+            f'for its parameters in "/{wanted}", but "{file.name}" sets "/{found}"',
+            origin=Origin(file=str(file)),
+            values={"controller": name, "namespace": f"/{wanted}", "stated": f"/{found}"},
+            hint="The namespace in the file and that of the spawner must be equal.",
+        )
+
+
+def _paths(use: LaunchUse) -> dict[str, Path] | None:
+    """The full names of the controllers in the files of a launch file, without the first slash.
+
+    None if a name or a namespace is uncertain.
+    """
+    found: dict[str, Path] = {}
+    for space, path in use.places:
+        file = name_and_file(path)[1]
+        try:
+            content = read_parameters(path)
+        except PluginError:
+            return None
+        if is_ros2(content):
+            continue
+        single = file == path and file.stem in content and len(content) == 1
+        for entry in ros1_entries(content, str(path)):
+            name = f"{entry.namespace}/{entry.name}".strip("/")
+            if UNKNOWN in space or "$(" in name or (single and name == file.stem):
+                return None
+            found[_full(space, name)] = file
+            # rosparam takes a key that begins with a slash as a global name.
+            if any(str(key).startswith("/") for key in content):
+                found[name] = file
+    return found
+
+
+def _full(space: str, name: str) -> str:
+    return f"{space}/{name}".strip("/")
 
 
 def only_loaded(starter: LaunchUse | None) -> Iterator[Diagnostic]:

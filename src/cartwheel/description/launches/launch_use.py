@@ -1,0 +1,53 @@
+"""What a launch file says about one robot."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LaunchUse:
+    """A robot description in a launch file, including what the launch file includes."""
+
+    file: Path
+    """The launch file."""
+    description: Path | None
+    """The description; None if the launch file only starts controllers."""
+    arguments: Mapping[str, str]
+    """Arguments of the xacro whose values are known."""
+    unknown: int = 0
+    """Number of arguments whose values are unknown."""
+    controllers: tuple[Path, ...] = ()
+    """YAML files that it loads, and launch files that contain parameters of controllers. A file
+    with a single controller, which a launch file loads into the namespace NAME, is
+    ``NAME=FILE``."""
+    spawned: tuple[str, ...] = ()
+    """Names of the controllers that it starts."""
+    loaded: tuple[str, ...] = ()
+    """Names of those that it loads, but does not start."""
+    undecided: frozenset[str] = frozenset()
+    """Those of them for which it may be a mistake: it does not state that they are inactive."""
+    absent: tuple[Path, ...] = ()
+    """YAML files that it loads and that do not exist."""
+    sought: tuple[tuple[str, str], ...] = ()
+    """The controllers that spawners of ROS 1 start: the namespace of the manager, and the name in
+    it. Those whose namespace is uncertain are left out."""
+    places: tuple[tuple[str, Path], ...] = ()
+    """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
+    it is uncertain."""
+    simulated: bool = False
+    """Whether it starts Gazebo or spawns a model."""
+    guessed: bool = False
+    """Whether an argument is the whole name of the description, which is not its default. It may
+    then be any file, also one that is not a robot."""
+    world: str = ""
+    """The world that it starts, as it is stated; empty if there is none."""
+    models: tuple[str, ...] = ()
+    """The names that it gives to the models that it spawns."""
+
+
+def only_loaded(loaded: Iterable[str], spawned: Collection[str]) -> tuple[str, ...]:
+    """The loaded controllers that no other command starts."""
+    return tuple(dict.fromkeys(name for name in loaded if name not in spawned))

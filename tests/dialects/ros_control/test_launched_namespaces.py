@@ -1,0 +1,120 @@
+"""Spawners whose controllers have their parameters in another namespace."""
+
+import pytest
+import yaml
+from tests.coded import coded
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
+
+import cartwheel as cw
+from cartwheel.codes.devices import CONTROLLER_UNDEFINED
+from cartwheel.corpus import try_robot
+
+SPAWNER = '<node name="s" pkg="controller_manager" type="spawner" {ns} args="move {more}"/>'
+SPAWN = '<node name="m" pkg="gazebo_ros" type="spawn_model" args="-param robot_description"/>'
+LOAD = '<rosparam file="$(find arm)/arm.yaml" command="load" {}/>'
+MOVE = {"type": "position_controllers/JointPositionController", "joint": "beam_joint"}
+STATES = {"type": "joint_state_controller/JointStateController", "publish_rate": 10}
+
+
+@pytest.fixture
+def arm(tmp_path):
+    """Writes a robot, its controllers and a launch file, and returns the robot's file."""
+
+    folder = tmp_path / "arm"
+    folder.mkdir()
+
+    def write(content, *elements, **others):
+        body = beam("beam", "world", axis="0 0 1") + transmission("beam_joint", "Position")
+        bot = folder / "arm.urdf"
+        bot.write_text(robot(body, ROS1.replace(">/<", ">/arm<")))
+        (folder / "package.xml").write_text("<package><name>arm</name></package>")
+        (folder / "arm.yaml").write_text(yaml.safe_dump(content))
+        shown = '<param name="robot_description" textfile="$(find arm)/arm.urdf"/>'
+        model = (
+            '<node name="m" pkg="gazebo_ros" type="spawn_model" args="-param robot_description"/>'
+        )
+        text = f"<launch>{shown}{model}{''.join(elements)}</launch>"
+        (folder / "arm.launch").write_text(text)
+        for name, other in others.items():
+            (folder / f"{name}.launch").write_text(f"<launch>{other}</launch>")
+        return bot
+
+    return write
+
+
+def spawner(space="", more=""):
+    return SPAWNER.format(ns=f'ns="{space}"' if space else "", more=more)
+
+
+def misplaced(verdict):
+    found = [each for each in verdict.observed if each.code is CONTROLLER_UNDEFINED]
+    return [(each.values["namespace"], each.values["stated"]) for each in found]
+
+
+def test_controllers_whose_parameters_are_elsewhere_do_not_start(arm):
+    bot = arm({"arm_controllers": {"move": MOVE}}, LOAD.format(""), spawner("arm"))
+    verdict = try_robot(bot, standing=1.0)
+    assert misplaced(verdict) == [("/arm/move", "/arm_controllers/move")]
+    assert verdict.controllers == verdict.reaches == ()
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject, fault.source) == ("controller", "move", "file")
+
+
+@pytest.mark.parametrize(
+    ("content", "elements"),
+    [
+        ({"arm": {"move": MOVE}}, (LOAD.format(""), spawner("arm"))),
+        ({"/arm": {"move": MOVE}}, (LOAD.format('ns="x"'), spawner("arm"))),
+        ({"move": MOVE}, (LOAD.format('ns="arm"'), spawner("/arm"))),
+        ({"move": MOVE}, ('<group ns="arm">', LOAD.format(""), spawner(), "</group>")),
+        ({"arm": {"move": MOVE}}, (LOAD.format(""), spawner().replace("move", "/arm/move"))),
+        ({"arm": {"move": MOVE}}, (LOAD.format(""), spawner("", "--namespace=/arm"))),
+        # What only the execution determines, and what may be loaded elsewhere.
+        ({"x": {"move": MOVE}}, (LOAD.format(""), spawner("$(arg unknown)"))),
+        ({"x": {"move": MOVE}}, (LOAD.format('ns="$(arg unknown)"'), spawner("arm"))),
+        ({"x": {"move": MOVE}}, (LOAD.format('param="arm"'), spawner("arm"))),
+        (
+            {"x": {"move": MOVE}},
+            ('<node name="n" pkg="p" type="t">', LOAD.format(""), "</node>", spawner("arm")),
+        ),
+        (
+            {"x": {"move": MOVE}},
+            (LOAD.format(""), LOAD.format("").replace("arm.yaml", "no.yaml"), spawner("arm")),
+        ),
+    ],
+)
+def test_controllers_whose_parameters_are_or_may_be_in_the_same_namespace_start(
+    arm, content, elements
+):
+    verdict = try_robot(arm(content, *elements), standing=1.0)
+    assert misplaced(verdict) == []
+    assert verdict.controllers == ("move",)
+    assert verdict.good, verdict.faults
+
+
+def test_another_launch_file_may_load_the_parameters(arm):
+    wrong = LOAD.format(""), spawner("arm")
+    right = LOAD.format("").replace("arm.yaml", "right.yaml")
+    bot = arm({"x": {"move": MOVE}}, *wrong, load=right)
+    (bot.parent / "right.yaml").write_text(yaml.safe_dump({"arm": {"move": MOVE}}))
+    assert misplaced(try_robot(bot, standing=1.0)) == []
+
+
+def test_of_several_controllers_those_start_whose_parameters_are_found(arm):
+    content = {"arm": {"states": STATES}, "x": {"move": MOVE}}
+    verdict = try_robot(arm(content, LOAD.format(""), spawner("arm", "states")), standing=1.0)
+    assert verdict.spawned == ("states",)
+    assert [each.subject for each in verdict.faults] == ["move"]
+
+
+def test_only_a_launch_file_that_is_started_keeps_controllers_from_starting(arm):
+    bot = arm({"x": {"move": MOVE}}, LOAD.format(""), spawner("arm"))
+    with cw.World("empty", lenient=True) as world:
+        world.spawn(bot, controllers="auto")
+        assert coded(world, CONTROLLER_UNDEFINED, controller="move", stated="/x/move")
+        world.run(0.1)
+        assert "/arm/move/command" in {each.name for each in world.graph.topics()}
+    with cw.launch(bot.parent / "arm.launch", lenient=True) as world:
+        assert coded(world, CONTROLLER_UNDEFINED, controller="move", stated="/x/move")
+        world.run(0.1)
+        assert "/arm/move/command" not in {each.name for each in world.graph.topics()}
