@@ -18,7 +18,7 @@ from cartwheel.checks.stated_sizes import controlled_sides, controlled_steering
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
 from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
-from cartwheel.codes.running import JOINT_DRIVEN_TWICE
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.elements.node import Node
 from cartwheel.description.launches import OwnLaunches
@@ -28,6 +28,7 @@ from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 REPORTED = (
     *(code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)),
+    CONTROLLER_NOT_STARTED,
     JOINT_DRIVEN_TWICE,
 )
 """Every code that a check can report, from the rules and from the description readers."""

@@ -191,6 +191,15 @@ def commands_joints(controller: Controller) -> bool:
     )
 
 
+def is_supported(controller: Controller) -> bool:
+    """Whether Cartwheel simulates the type of a controller."""
+    try:
+        find_type(controller.kind, ros2=controller.file.is_ros2)
+    except UnknownNameError:
+        return False
+    return True
+
+
 def uncommanded(tag: PluginTag, launch: Path | None, started: Sequence[str]) -> Diagnostic:
     """The diagnostic that no controller of a manager commands a joint.
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import functools
 import importlib
+from pathlib import Path
 
 from cartwheel.codes import devices
+from cartwheel.description.files.plugin_xml import exporting_file
 from cartwheel.dialects.generated import CONTROLLERS
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.errors import UnknownNameError
+from cartwheel.similar_names import LONGEST, SIMILAR, closest
 
 ACKERMANN = "ackermann_steering_controller/AckermannSteeringController"
 
@@ -25,8 +28,13 @@ def controller_types() -> dict[str, type[Controller]]:
     }
 
 
-def find_type(name: str, *, ros2: bool) -> type[Controller]:
+def find_type(name: str, *, ros2: bool, file: str = "") -> type[Controller]:
     """Returns the class of a controller type. The C++ spelling ``a::B`` is read as ``a/B``.
+
+    Args:
+        name: The type.
+        ros2: Whether it is a type of ROS 2.
+        file: A file of the repository, which may define controllers of its own.
 
     Raises:
         UnknownNameError: The type is not supported.
@@ -38,6 +46,15 @@ def find_type(name: str, *, ros2: bool) -> type[Controller]:
         from cartwheel.dialects.ros_control.controllers.steer_drive import SteerDriveController
 
         return SteerDriveController
-    if plain not in known:
-        raise UnknownNameError("controller type", name, known, code=devices.CONTROLLER_TYPE_UNKNOWN)
-    return known[plain]
+    if plain in known:
+        return known[plain]
+    code = devices.CONTROLLER_TYPE_UNKNOWN
+    shown = name.strip()[:LONGEST]
+    exporting = exporting_file(Path(file), plain) if file else None
+    if exporting is not None:
+        message = f'controller type "{shown}", which "{exporting.name}" exports, is not supported'
+        raise UnknownNameError("controller type", name, (), code=code, message=message)
+    packages = {each.partition("/")[0] for each in known}
+    foreign = plain.partition("/")[0] not in packages and not closest(plain, known, SIMILAR)
+    message = f'controller type "{shown}" is not supported' if foreign else ""
+    raise UnknownNameError("controller type", name, known, code=code, message=message)

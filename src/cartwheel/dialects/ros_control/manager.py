@@ -91,7 +91,8 @@ class ControllerManager:
         """
         if name in self._controllers:
             raise wrong_state(name, "is already loaded")
-        family = find_type(type_name, ros2=self.robot.ros2)
+        file = self.robot.plugin.part.description.origin.file
+        family = find_type(type_name, ros2=self.robot.ros2, file=file)
         controller = family(name, type_name.strip().replace("::", "/"), settings, self.robot)
         settings.ignore("type")
         unread = settings.unread()

@@ -7,7 +7,10 @@ from collections.abc import Iterator
 from cartwheel.checks.controller_claims import (
     Claim,
     claims,
+    commands_joints,
     has_standard_hardware,
+    is_supported,
+    names_of,
     offers,
     severity_in,
 )
@@ -17,9 +20,13 @@ from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element
 from cartwheel.errors import Diagnostic
 
+_SHOWN = 3
+"""Number of joints that a message names."""
+
 
 @rule(devices_codes.CONTROLLER_INTERFACE_MISMATCH)
 def controller_interface(subject: Subject) -> Iterator[Diagnostic]:
+    yield from _fixed(subject)
     for robot in subject.robots:
         found = [
             claim
@@ -41,6 +48,39 @@ def controller_interface(subject: Subject) -> Iterator[Diagnostic]:
             ]
             if asked and has_standard_hardware(robot, ros2=ros2):
                 yield from _unanswered(asked, held, ros2=ros2)
+
+
+def _fixed(subject: Subject) -> Iterator[Diagnostic]:
+    """Fixed joints in controllers of unsupported types, which no interface can command."""
+    for robot, file in subject.control:
+        for controller in file.controllers:
+            if not commands_joints(controller) or is_supported(controller):
+                # The interfaces of other controllers are known.
+                continue
+            listed = [
+                (value, robot.joints[name])
+                for value in controller.values(*sorted(names_of("joint")))
+                if (name := value.text.strip()) in robot.joints
+            ]
+            fixed = [(value, joint) for value, joint in listed if joint.type == "fixed"]
+            if not fixed or (not file.named and len(fixed) == len(listed)):
+                continue
+            names = ", ".join(f'"{joint.name}"' for _, joint in fixed[:_SHOWN])
+            more = f" and {len(fixed) - _SHOWN} more" if len(fixed) > _SHOWN else ""
+            joints = f"the fixed joint {names}" if len(fixed) == 1 else f"fixed joints: {names}"
+            yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
+                severity=severity_in(file),
+                message=f'controller "{controller.name}" lists {joints}{more}. No interface '
+                "commands a fixed joint, so the controller does not start",
+                values={
+                    "controller": controller.name,
+                    "joint": fixed[0][1].name,
+                    "joints": tuple(joint.name for _, joint in fixed),
+                },
+                origin=fixed[0][0].origin,
+                mark=fixed[0][0].text,
+                hint="Remove it from the list, or change the type of the joint.",
+            )
 
 
 def _unanswered(

@@ -12,6 +12,7 @@ from cartwheel.checks.controller_claims import (
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.files.plugin_xml import exporting_file
 from cartwheel.dialects.ros_control.catalogue import controller_types
 from cartwheel.dialects.ros_control.fetch import TRANSLATED
 from cartwheel.errors import Diagnostic
@@ -43,7 +44,10 @@ def controller_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
         near = other or ("" if kind in known else spelling.meant(kind, known, parts=False))
         if kind in known and not other:
             continue
-        if not near and not controller.file.named:
+        own = not other and kind not in known and exporting_file(controller.file.path, kind)
+        if own:
+            near = ""
+        if not near and not own and not controller.file.named:
             continue
         message = f'the controller type "{controller.type.text}" does not exist'
         if other and controller.file.is_ros2:
