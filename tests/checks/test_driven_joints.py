@@ -6,6 +6,7 @@ from tests.corpus.test_rivals import MANAGER, managed
 
 from cartwheel.api import World
 from cartwheel.checks.checking import check
+from cartwheel.codes.robot import WHEEL_SEPARATION_MISMATCH
 from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 
 AGAIN = plugin().replace('name="drive"', 'name="again"')
@@ -43,8 +44,18 @@ def test_two_drivers_of_a_joint_are_found_without_a_simulation(tmp_path, parts, 
     assert {each.values["joint"] for each in said} == set(joints)
 
 
-@pytest.mark.parametrize("starts", [True, False])
-def test_a_controller_near_a_robot_counts_if_a_launch_file_starts_it(tmp_path, starts):
+@pytest.mark.parametrize(
+    ("starts", "listed", "reported"),
+    [
+        (True, managed("Effort"), True),
+        (False, managed("Effort"), False),
+        # Without a transmission, the controller cannot start.
+        (True, MANAGER, False),
+    ],
+)
+def test_a_controller_near_a_robot_counts_if_a_launch_file_starts_it(
+    tmp_path, starts, listed, reported
+):
     (tmp_path / "package.xml").write_text("<package><name>robot</name></package>")
     (tmp_path / "config").mkdir()
     (tmp_path / "config" / "base.yaml").write_text(
@@ -57,6 +68,16 @@ def test_a_controller_near_a_robot_counts_if_a_launch_file_starts_it(tmp_path, s
             '<rosparam file="$(find robot)/config/base.yaml" command="load"/>'
             '<node name="s" pkg="controller_manager" type="spawner" args="base"/></launch>'
         )
-    path = written(tmp_path, cart(), plugin(), managed("Effort"))
+    path = written(tmp_path, cart(), plugin(), listed)
     found = [each for each in check(path).findings if each.code is JOINT_DRIVEN_TWICE]
-    assert [each.values["joints"] for each in found] == [BOTH] * starts
+    assert [each.values["joints"] for each in found] == [BOTH] * reported
+
+
+@pytest.mark.parametrize(("diameter", "turns"), [(0.1, None), (0.08, 1.5 * 0.1 / 0.08)])
+def test_a_wrong_separation_counts_together_with_a_wrong_diameter(tmp_path, diameter, turns):
+    """The wheels are 0.2 m apart and have a diameter of 0.1 m."""
+    wrong = plugin().replace("<wheelSeparation>0.2", "<wheelSeparation>0.3")
+    wrong = wrong.replace("<wheelDiameter>0.1<", f"<wheelDiameter>{diameter}<")
+    path = written(tmp_path, cart(), wrong)
+    found = [each for each in check(path).findings if each.code is WHEEL_SEPARATION_MISMATCH]
+    assert [each.values.get("turns") for each in found] == [pytest.approx(turns)]

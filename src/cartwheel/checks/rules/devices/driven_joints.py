@@ -93,14 +93,19 @@ def _managers(robot: Robot) -> Iterator[tuple[str, _Driver]]:
 def _controllers(subject: Subject, robot: Robot, driven: set[str]) -> Iterator[tuple[str, _Driver]]:
     """Those of the joints that controllers command.
 
-    A file that was only found near the robot counts if a launch file starts the controller.
+    A file that was only found near the robot counts if a launch file starts the controller. Joints
+    without any interface do not count: their controllers cannot start.
     """
     starts: tuple[str, ...] | None = None
+    offered = {ros2: set(offers(robot, ros2=ros2)) for ros2 in (True, False)}
+    standard = {ros2: has_standard_hardware(robot, ros2=ros2) for ros2 in (True, False)}
     for owner, file in subject.control:
         if owner is not robot:
             continue
         for controller in file.controllers:
             joints = {each.joint for each in claims(controller)} & driven
+            if standard[file.is_ros2]:
+                joints &= offered[file.is_ros2]
             if joints and not file.named:
                 starts = launched(robot.description) if starts is None else starts
                 if controller.name not in starts:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from cartwheel.checks.rule import rule
+from cartwheel.checks.rules.wheels.wheel_diameter import wrong_size
 from cartwheel.checks.sliding import turn_ratio
 from cartwheel.checks.stated_sizes import (
     LEAST,
@@ -63,9 +64,38 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
                 f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}, so the robot turns "
                 f"{abs(one.used / apart - 1):.0%} {more} than commanded",
             )
+            found = _with_wrong_wheels(found, one, one.used / apart, sizes)
             # A wheel may be offset from its joint, and the author measured between the joints.
             offset = not differs(one.used, joints, LEAST)
             yield replace(found, severity="info") if offset else found
+
+
+def _with_wrong_wheels(
+    found: Diagnostic, one: Stated, ratio: float, sizes: Sequence[Stated]
+) -> Diagnostic:
+    """The finding with the turn rate if the size of the same wheels is wrong as well.
+
+    Args:
+        found: The finding.
+        one: The stated separation.
+        ratio: The turn rate relative to the commanded one, with the right size of the wheels.
+        sizes: All stated sizes.
+    """
+    wheels = {*one.first, *one.second}
+    for other in sizes:
+        if other.robot is not one.robot or wheels.isdisjoint(other.first) or not other.used:
+            continue
+        real = wrong_size(other)
+        if real is not None:
+            turns = ratio * real / other.used
+            more = "more" if turns > 1 else "less"
+            return replace(
+                found,
+                message=f"{found.message}, and {abs(turns - 1):.0%} {more} with the wrong "
+                f"{other.measure} of its wheels",
+                values={**found.values, "turns": turns},
+            )
+    return found
 
 
 def _widest(one: Stated, track: float) -> float:
