@@ -1,6 +1,7 @@
 """Plugins that exist only in ROS 1 or only in ROS 2."""
 
 import pytest
+from tests.corpus.carts import cart, plugin, written
 
 import cartwheel
 from cartwheel.codes.devices import CONTROLLERS_NOT_FOUND, PLUGIN_OF_OTHER_ROS
@@ -84,3 +85,45 @@ def test_plugins_of_one_version_are_simulated_or_unknown():
     names = {name for each in _REPLACEMENTS.values() for name in each}
     unknown = {"gazebo_ros_f3d", "gazebo_ros_prosilica", "gazebo_ros_triggered_camera"}
     assert names - set(PLUGINS) <= unknown | {"gazebo_ros_triggered_multicamera"}
+
+
+OLD = "<leftJoint>l_wheel</leftJoint><rightJoint>r_wheel</rightJoint>"
+NEW = "<left_joint>l_wheel</left_joint><right_joint>r_wheel</right_joint>"
+DEFAULT = "<left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>"
+ROS = "<ros><namespace>bot</namespace></ros>"
+
+
+@pytest.mark.parametrize(
+    ("stated", "tags", "wrong"),
+    [
+        (AMENT, OLD, "leftJoint"),
+        (AMENT, NEW, None),
+        (AMENT, OLD + NEW, None),
+        (CATKIN, NEW, "left_joint"),
+        (CATKIN, ROS + NEW, "left_joint"),
+        (CATKIN, OLD, None),
+        # In ROS 1, the wheels have these names without a tag.
+        (CATKIN, DEFAULT, None),
+        ("", ROS + OLD, "leftJoint"),
+        ("", OLD, None),
+        ("", NEW, None),
+    ],
+)
+def test_tags_of_the_other_version_are_reported(tmp_path, stated, tags, wrong):
+    path = robot(tmp_path, "libgazebo_ros_diff_drive.so", stated, tags)
+    assert [each.values["tag"] for each in found(path)] == ([wrong] if wrong else [])
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_a_drive_with_the_tags_of_the_other_version_does_not_drive_in_gazebo(tmp_path, version):
+    folder = tmp_path / "cart"
+    folder.mkdir()
+    stated = CATKIN if version == 1 else AMENT
+    (folder / "package.xml").write_text(f"<package><name>cart</name>{stated}</package>")
+    parts = cart().replace("left_joint", "l_wheel").replace("right_joint", "r_wheel")
+    drive = plugin().replace("left_joint", "l_wheel").replace("right_joint", "r_wheel")
+    verdict = try_robot(written(folder, parts, drive), standing=1.0)
+    (driven,) = verdict.drives
+    assert driven.passes
+    wrong = [("plugin", PLUGIN_OF_OTHER_ROS, "file")] if version == 2 else []
+    assert [(each.test, each.code, each.source) for each in verdict.faults] == wrong

@@ -14,7 +14,7 @@ from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_p
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.dialects.ros_only import other_ros
+from cartwheel.dialects.ros_only import other_ros, other_tags
 from cartwheel.errors import Diagnostic
 
 _HEAVY = 1000.0
@@ -140,6 +140,7 @@ def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> 
                 if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
                 and each.values.get("plugin") == tag.filename
             )
+            reason = reason or other_tags(description, tag)
         else:
             reason = devices.PLUGIN_UNKNOWN.diagnostic(
                 f'plugin "{tag.filename}" is not supported, so it has no effect',

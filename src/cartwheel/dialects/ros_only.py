@@ -47,6 +47,14 @@ _REPLACEMENTS: Mapping[int, Mapping[str, str]] = {
 nothing alike."""
 
 
+_REQUIRED: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "gazebo_ros_diff_drive": (("leftJoint", "left_joint"), ("rightJoint", "right_joint")),
+    "gazebo_ros_p3d": (("bodyName", "body_name"),),
+    "gazebo_ros_ft_sensor": (("jointName", "joint_name"),),
+}
+"""Tags without which a plugin of both versions does not work: in ROS 1, and in ROS 2."""
+
+
 _PACKAGES, _BYTES = 200, 100_000
 """Packages of a repository whose CMakeLists.txt is searched, and bytes of each file."""
 
@@ -65,6 +73,39 @@ def only_in(filename: str) -> tuple[Literal[1, 2], str] | None:
     if name in _REPLACEMENTS[1]:
         return 1, _REPLACEMENTS[1][name]
     return (2, _REPLACEMENTS[2][name]) if name in _REPLACEMENTS[2] else None
+
+
+def other_tags(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:
+    """The finding that a plugin does not work, because its tags are those of another ROS version.
+
+    None if the version is unknown. A ``<ros>`` element shows that a plugin is for ROS 2, unless the
+    package of the robot is for ROS 1.
+
+    Args:
+        robot: The robot.
+        tag: One of its plugins.
+    """
+    required = _REQUIRED.get(short_name(tag.filename), ())
+    if not required:
+        return None
+    file = Path(robot.origin.file)
+    own = ros_version(file) or (2 if tag.element.find("ros") is not None else None)
+    if own is None or _builds(file, short_name(tag.filename)):
+        return None
+    for first, second in required:
+        mine, theirs = (first, second) if own == 1 else (second, first)
+        stated = tag.element.find(theirs)
+        # ROS 1's default for the joint is the name of ROS 2's tag.
+        if tag.element.find(mine) is None and stated is not None and stated.text.strip() != second:
+            return devices.PLUGIN_OF_OTHER_ROS.diagnostic(
+                f'the plugin "{tag.filename}" of ROS {own} reads <{mine}>, not <{theirs}>, so it '
+                "does not work",
+                origin=stated.origin,
+                hint=f"Write <{mine}>, and the other tags as in ROS {own}.",
+                mark=theirs,
+                values={"plugin": tag.filename, "tag": theirs, "ros": float(own)},
+            )
+    return None
 
 
 def other_ros(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:

@@ -9,7 +9,7 @@ from cartwheel.checks import edits, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
-from cartwheel.dialects.ros_only import other_ros
+from cartwheel.dialects.ros_only import other_ros, other_tags
 from cartwheel.dialects.substitutes import substitute
 from cartwheel.errors import Diagnostic
 from cartwheel.similar_names import meant_one
@@ -56,7 +56,7 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
 def plugin_of_other_ros(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for tag, _ in robot.plugins():
-            found = other_ros(robot.description, tag)
+            found = other_ros(robot.description, tag) or other_tags(robot.description, tag)
             if found is not None:
                 yield found
 
