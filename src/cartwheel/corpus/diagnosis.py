@@ -8,7 +8,7 @@ from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
-from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall
+from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through
 from cartwheel.corpus.faults import Fault, Test, coded, most_severe
 from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_plugins
 from cartwheel.corpus.verdict import Verdict
@@ -93,11 +93,14 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
     """Why Gazebo does not load a robot for it: its root link has no mass.
 
     A description without plugins and sensors that no launch file starts in Gazebo may be one for
-    other programs, in which links need no mass.
+    other programs, in which links need no mass. If it falls because no link has a collision, it is
+    no robot for Gazebo in any case, and Gazebo reports the mass first.
     """
     sensors = any(link.sensors for link in description.links)
     started = verdict.launch is not None and verdict.launch.simulated
-    if not (verdict.movers or description.plugins or sensors or started):
+    shapes = any(link.collisions for link in description.links)
+    falls = verdict.stand is not None and falls_through(verdict.stand) and not shapes
+    if not (verdict.movers or description.plugins or sensors or started or falls):
         return None
     if coded(description.diagnostics, LEFT_OUT) is not None:
         # The missing part may contain the mass.

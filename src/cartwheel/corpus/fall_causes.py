@@ -57,7 +57,7 @@ def cause_of_fall(
         # The collisions may be in the part that was left out.
         bodies = [each for each in reasons if each.code is robot.BASE_WITHOUT_COLLISION]
         reasons = [absent, *(each for each in reasons if each not in bodies)]
-    if stand.sunk > _FALLEN * max(1.0, stand.size):
+    if falls_through(stand):
         bottomless = coded(reasons, frozenset({robot.BASE_WITHOUT_COLLISION}))
         if bottomless is not None:
             return bottomless
@@ -72,6 +72,11 @@ def cause_of_fall(
         # masses of all links.
         reasons = [each for each in reasons if each.code not in _ABSENT | {robot.INERTIA_MISSING}]
     return most_severe(reasons) or idle
+
+
+def falls_through(stand: Stand) -> bool:
+    """Whether a robot sank so far that it fell through the ground."""
+    return stand.sunk > _FALLEN * max(1.0, stand.size)
 
 
 def _bends(joint: Joint) -> bool:
