@@ -134,6 +134,31 @@ def test_a_gearbox_turns_the_child_by_its_ratio_the_other_way(make, flipped):
     assert float(data.body("m::small").cvel[2]) == pytest.approx(-ratio * rate, rel=0.01)
 
 
+def test_a_gearbox_at_a_limit_holds_both_joints(make):
+    axis = "<axis><xyz>0 0 1</xyz>{}</axis>"
+    limit = "<limit><lower>-0.3</lower><upper>0.3</upper></limit>"
+    world = run(
+        make,
+        *GEARS,
+        joint("a", "revolute", "case", "large", axis.format("")),
+        joint("b", "revolute", "case", "small", axis.format(limit)),
+        joint(
+            "box",
+            "gearbox",
+            "large",
+            "small",
+            "<gearbox_ratio>3</gearbox_ratio>"
+            "<gearbox_reference_body>case</gearbox_reference_body>"
+            "<axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 0 1</xyz></axis2>",
+        ),
+        gravity=0.0,
+    )
+    data = data_of(world)
+    data.body("m::large").xfrc_applied[5] = 0.5
+    world.run(2.0)
+    assert world.session.simulation.joint_position("m", "a") == pytest.approx(0.1, abs=0.01)
+
+
 def test_a_gearbox_without_hinges_says_so(make):
     model = make.sdf(
         '<model name="m">'

@@ -74,6 +74,21 @@ def test_a_follower_follows_within_its_limits_and_waits_there():
     assert np.ptp(follow) > 0.3
 
 
+def test_a_small_follower_of_a_light_leader_does_not_lag():
+    """The constraint is as stiff as that of a follower whose limits contain all targets."""
+    light = LEAD.replace(BODY.format(mass=1), BODY.format(mass=0.001).replace("0.001", "1e-6"))
+    slide = follower('lower="0" upper="0.02"', 'multiplier="0.01"', mass=0.05)
+    slide = slide.replace('type="revolute"', 'type="prismatic"')
+    with cw.World("empty") as made:
+        made.spawn(load_text(f'<robot name="r">{light}{slide}</robot>', file="r.urdf"))
+        simulation = made.session.simulation
+        assert simulation.engine.stepping.followers is not None
+        simulation.drive("r", "lead", velocity=1.0, max_effort=10.0)
+        lead, follow = swing(made, "lead", "follow", steps=75).T
+    assert lead[-1] == pytest.approx(1.5, abs=0.01)
+    assert follow == pytest.approx(0.01 * lead, abs=1e-4)
+
+
 def test_followers_of_followers_follow_the_positions_that_these_reach():
     parts = (
         follower('lower="-1" upper="0.4"', 'multiplier="1"', mass=0.1),
@@ -92,14 +107,17 @@ def test_a_position_of_a_leader_places_its_follower_at_its_limit():
         assert positions(made, "follow") == pytest.approx([0.4], abs=1e-9)
 
 
-def test_a_limited_coupling_is_reported_with_its_own_ratio():
-    with world(follower('lower="0" upper="1"', 'multiplier="-0.5" offset="0.1"')) as made:
+@pytest.mark.parametrize("multiplier", [-0.5, 0.5])
+def test_a_limited_coupling_is_reported_with_its_own_ratio(multiplier):
+    """Also while it is written for the leader, within the limits."""
+    with world(follower('lower="0" upper="1"', f'multiplier="{multiplier}" offset="0.1"')) as made:
         made.run(0.3)
         simulation = made.session.simulation
         engine = simulation.engine
         names = {engine.joint_id("r", name): name for name in ("lead", "follow")}
         (found,) = couplings(engine.model, engine.data, names)
-    assert (found.follower, found.ratio, found.offset) == ("follow", -0.5, 0.1)
+    assert (found.follower, found.leader) == ("follow", "lead")
+    assert (found.ratio, found.offset) == (multiplier, 0.1)
 
 
 @pytest.mark.parametrize(("lower", "limited"), [(-0.5, False), (-0.4, True)])
@@ -133,3 +151,25 @@ def test_runs_of_one_step_and_of_many_have_the_same_bits():
             one.run(0.005)
         other.run(1.0)
         assert positions(one, "lead", "follow") == positions(other, "lead", "follow")
+
+
+@pytest.mark.parametrize("multiplier", [0.5, 1])
+def test_limits_that_change_release_and_couple_the_leader(multiplier):
+    """The limits of a leader and of its follower, while the world runs."""
+    lead = LEAD.replace(
+        'type="continuous">', 'type="revolute"><limit lower="0" upper="1" effort="9" velocity="9"/>'
+    )
+    part = follower('lower="0" upper="1"', f'multiplier="{multiplier}"', mass=0.1)
+    with cw.World("empty") as made:
+        model = made.spawn(load_text(f'<robot name="r">{lead}{part}</robot>', file="r.urdf"))
+        engine = made.session.simulation.engine
+        made.run(0.1)
+        assert engine.stepping.followers is None
+        model.joints["follow"].limits = 0.0, 0.2
+        made.run(1.0)
+        assert engine.stepping.followers is not None
+        assert positions(made, "lead", "follow") == pytest.approx([1.0, 0.2], abs=0.01)
+        model.joints["lead"].limits = 0.0, 0.1
+        made.run(1.0)
+        assert engine.stepping.followers is None
+        assert positions(made, "lead", "follow") == pytest.approx([0.1, 0.1 * multiplier], abs=0.01)

@@ -112,11 +112,13 @@ def couple(
 
     The engine uses the sum of both inverse inertias for the constraint, which determines its
     softness. Written for the joint that moves more, the constraint is never softer than intended.
-    A `clamped` follower always comes first, and the ratio and offset are stored a second time.
+    A `clamped` follower comes first, and the ratio and offset are stored a second time, until
+    `Followers` writes the constraint for the positions of the joints.
     """
     stored = (1.0, offset, ratio) if clamped else ()
-    if 0 < abs(ratio) < 1 and not clamped:
-        follower, leader, offset, ratio = leader, follower, -offset / ratio, 1 / ratio
+    if reverses(ratio) and not clamped:
+        follower, leader = leader, follower
+        ratio, offset = reversed_coupling(ratio, offset)
     spec.add_equality(
         name=name,
         type=_EQUALITY.mjEQ_JOINT,
@@ -127,6 +129,16 @@ def couple(
         solref=list(STIFF_REFERENCE),
         solimp=list(STIFF_IMPEDANCE),
     )
+
+
+def reverses(ratio: float) -> bool:
+    """Whether a coupling is written for its leader, because the leader moves more."""
+    return 0 < abs(ratio) < 1
+
+
+def reversed_coupling(ratio: float, offset: float) -> tuple[float, float]:
+    """The ratio and the offset of a coupling that is written for its leader."""
+    return 1 / ratio, -offset / ratio
 
 
 def close_loop(spec: mujoco.MjSpec, entry: ModelEntry, joint: Joint) -> None:

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 import mujoco
 
 from cartwheel.description.mimicking import targets
-from cartwheel.description.model import Joint, Mimic
+from cartwheel.description.model import Joint, Mimic, RobotDescription
 from cartwheel.world import joints
 from cartwheel.world.entry import ModelEntry, scoped
 
 CLAMPED = slice(5, 8)
-"""Elements in the data of a coupling, which the engine does not read: 1 if the target of the
-follower is limited, the offset and the ratio."""
+"""Elements in the data of a coupling, which the engine does not read: not 0 if the target of the
+follower is limited, and negative while the leader comes first; the offset and the ratio."""
 _SLACK = 1e-6
 """rad or m by which the target may be outside the limits of a follower."""
 
@@ -31,8 +31,8 @@ def add_mimics(spec: mujoco.MjSpec, entry: ModelEntry) -> None:
     """
     if entry.description.static:
         return
-    named = {joint.name: joint for joint in entry.description.joints}
-    for joint in named.values():
+    limited = limited_followers(entry, entry.description)
+    for joint in entry.description.joints:
         mimic = mimic_of(entry, joint)
         if mimic is None or joint.type == "fixed":
             continue
@@ -43,7 +43,7 @@ def add_mimics(spec: mujoco.MjSpec, entry: ModelEntry) -> None:
             scoped(entry.name, mimic.joint),
             ratio=mimic.multiplier,
             offset=mimic.offset,
-            clamped=not mimic.mutual and _leaves(entry, named, joint, mimic),
+            clamped=joint.name in limited,
         )
 
 
@@ -52,8 +52,21 @@ def mimic_of(entry: ModelEntry, joint: Joint) -> Mimic | None:
     return entry.mimics.get(joint.name, joint.mimic)
 
 
-def _leaves(entry: ModelEntry, named: Mapping[str, Joint], joint: Joint, mimic: Mimic) -> bool:
-    """Whether the leader can have positions that a follower's limits exclude."""
+def limited_followers(entry: ModelEntry, description: RobotDescription) -> frozenset[str]:
+    """The joints whose leaders can have positions that the joints' own limits exclude.
+
+    Args:
+        entry: The model.
+        description: Its description, now or before.
+    """
+    named = {joint.name: joint for joint in description.joints}
+    return frozenset(joint.name for joint in description.joints if _leaves(entry, named, joint))
+
+
+def _leaves(entry: ModelEntry, named: Mapping[str, Joint], joint: Joint) -> bool:
+    mimic = mimic_of(entry, joint)
+    if mimic is None or mimic.mutual:
+        return False
     bounds = joints.limits_of(joint, joint.axis, follows=joint.name in entry.mimics)
     if bounds is None:
         return False

@@ -71,7 +71,8 @@ def mesh_gears(
             for (joint, sense), tag in ((first, "axis"), (second, "axis2"))
         ]
         multiplier = -ratio * senses[0] * senses[1]
-        geared = replace(second[0], mimic=Mimic(joint=first[0].name, multiplier=multiplier))
+        mimic = Mimic(joint=first[0].name, multiplier=multiplier, mutual=True)
+        geared = replace(second[0], mimic=mimic)
         joints = [geared if joint is second[0] else joint for joint in joints]
     return joints
 

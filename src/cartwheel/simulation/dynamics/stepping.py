@@ -46,7 +46,7 @@ class Stepping:
             SimulationError: There is not enough memory for the contacts.
         """
         if self.followers is not None:
-            self.followers.apply(self._model, data)
+            self.followers.apply(data)
         try:
             mujoco.mj_forward(self._model, data)
             if carries and self.carried is not None:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import mujoco
 
-from cartwheel.geometry import Array
 from cartwheel.world.mimics import CLAMPED
 
 
@@ -32,27 +31,27 @@ def couplings(
         data: Its state.
         names: The joints that count: names by the engine's index.
     """
-    return [
-        Coupling(
-            follower=names[follower],
-            leader=names[leader],
-            ratio=ratio,
-            offset=offset,
-        )
-        for kind, follower, leader, values, active in zip(
-            model.eq_type.tolist(),
-            model.eq_obj1id.tolist(),
-            model.eq_obj2id.tolist(),
-            model.eq_data,
-            data.eq_active.tolist(),
-            strict=True,
-        )
-        for offset, ratio in [_stated(values)]
-        if kind == mujoco.mjtEq.mjEQ_JOINT and active and follower in names and leader in names
-    ]
-
-
-def _stated(values: Array) -> tuple[float, float]:
-    """Offset and ratio of a constraint, also while a limit of the follower replaces its target."""
-    marked, offset, ratio = values[CLAMPED].tolist()
-    return (offset, ratio) if marked else (float(values[0]), float(values[1]))
+    found = []
+    for kind, first, second, values, active in zip(
+        model.eq_type.tolist(),
+        model.eq_obj1id.tolist(),
+        model.eq_obj2id.tolist(),
+        model.eq_data,
+        data.eq_active.tolist(),
+        strict=True,
+    ):
+        if kind != mujoco.mjtEq.mjEQ_JOINT or not active:
+            continue
+        offset, ratio = values[:2].tolist()
+        follower, leader = first, second
+        mark, stated_offset, stated_ratio = values[CLAMPED].tolist()
+        if mark:
+            # A limit of the follower may replace its target.
+            offset, ratio = stated_offset, stated_ratio
+        if mark < 0:
+            follower, leader = second, first
+        if follower in names and leader in names:
+            found.append(
+                Coupling(follower=names[follower], leader=names[leader], ratio=ratio, offset=offset)
+            )
+    return found

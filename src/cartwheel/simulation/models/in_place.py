@@ -32,6 +32,7 @@ from cartwheel.world.contact import BuiltSurface, friction, reference
 from cartwheel.world.contact_rules import ContactRules, contact_rules
 from cartwheel.world.entry import ROTOR, ModelEntry, Motor, collision_of, scoped
 from cartwheel.world.joints import axes_of, friction_of, limits_of
+from cartwheel.world.mimics import limited_followers
 from cartwheel.world.pairs import Pair
 from cartwheel.world.visuals import plain_colour
 
@@ -87,6 +88,9 @@ class InPlace:
         """
         after = entry.description
         if not differ_in_place(before, after):
+            return None
+        if limited_followers(entry, before) != limited_followers(entry, after):
+            # Their constraints are written differently.
             return None
         model, name = self._engine.model, entry.name
         links = [pair for pair in zip(before.links, after.links, strict=True) if _differ(*pair)]

@@ -23,7 +23,7 @@ def mimic_limits(subject: Subject) -> Iterator[Diagnostic]:
         for joint in robot.description.joints:
             mimic = joint.mimic
             limits = stated_limits(joint, follows=True)
-            if mimic is None or limits is None:
+            if mimic is None or mimic.mutual or limits is None:
                 continue
             low, high = targets(mimic, robot.joints, lambda each: each.mimic)
             span = limits[1] - limits[0]
