@@ -12,6 +12,7 @@ from typing import Literal
 
 from cartwheel.codes import devices
 from cartwheel.description.files.package_folders import packages_below
+from cartwheel.description.files.regular_files import read_start
 from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.model import PluginTag, RobotDescription
@@ -143,9 +144,8 @@ def _builds(file: Path, name: str) -> bool:
     folders = itertools.chain([root], (folder for _, folder in packages_below(root)))
     for folder in itertools.islice(folders, _PACKAGES):
         try:
-            with (folder / "CMakeLists.txt").open("rb") as text:
-                if name.encode() in text.read(_BYTES):
-                    return True
+            if name.encode() in read_start(folder / "CMakeLists.txt", _BYTES):
+                return True
         except OSError:
             continue
     return False

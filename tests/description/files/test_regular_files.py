@@ -10,9 +10,11 @@ import pytest
 from tests.coded import raises
 
 from cartwheel.checks.checking import check
+from cartwheel.codes.devices import PLUGIN_OF_OTHER_ROS
 from cartwheel.codes.files import MESH_UNREADABLE
 from cartwheel.corpus.finding import robots_in
 from cartwheel.description import load
+from cartwheel.description.files.plugin_xml import exporting_file
 from cartwheel.description.files.regular_files import read_regular, read_regular_text
 from cartwheel.description.meshes import load_mesh, mesh_notes
 from cartwheel.description.model import Mesh
@@ -71,3 +73,20 @@ def test_a_repository_full_of_pipes_is_searched(tmp_path):
     assert [path.name for path in robots_in(tmp_path)] == ["robot.urdf"]
     assert load(tmp_path / "robot.urdf").name == "r"
     check(tmp_path / "robot.urdf")
+
+
+@pytest.mark.parametrize("pipe", ["CMakeLists.txt", "plugins.xml"])
+def test_pipes_in_packages_beside_a_robot_are_not_read(tmp_path, pipe):
+    """These files are searched for plugins and controllers that the repository builds."""
+    (tmp_path / ".git").mkdir()
+    for name in ("arm", "plugins"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "package.xml").write_text(
+            f"<package><name>{name}</name><buildtool_depend>ament_cmake</buildtool_depend></package>"
+        )
+    os.mkfifo(tmp_path / "plugins" / pipe)
+    path = tmp_path / "arm" / "robot.urdf"
+    plugin = '<gazebo><plugin name="p" filename="libgazebo_ros_laser.so"/></gazebo>'
+    path.write_text(f'<robot name="r"><link name="a"/>{plugin}</robot>')
+    assert PLUGIN_OF_OTHER_ROS in {each.code for each in check(path).findings}
+    assert exporting_file(path, "own_controllers/Own") is None

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import itertools
 import re
+from functools import lru_cache
 from pathlib import Path
 
 from cartwheel.description.files.package_folders import packages_below
+from cartwheel.description.files.regular_files import read_start
 from cartwheel.description.files.repositories import repository_of
 
 _PACKAGES, _FILES, _BYTES = 200, 20, 65536
@@ -33,17 +35,23 @@ def exporting_file(file: Path, name: str) -> Path | None:
     plain = name.strip().replace("::", "/")
     for folder in itertools.islice(folders, _PACKAGES):
         for path in itertools.islice(sorted(folder.glob("*.xml")), _FILES):
-            if plain in _exported(path):
-                return path
+            try:
+                if plain in _exported(path, path.stat().st_mtime_ns):
+                    return path
+            except OSError:
+                continue
     return None
 
 
-def _exported(path: Path) -> set[str]:
-    """The names and types of the classes that a file exports, with slashes."""
-    try:
-        with path.open("rb") as file:
-            text = file.read(_BYTES).decode("utf-8", "replace")
-    except OSError:
-        return set()
+@lru_cache(maxsize=2 * _PACKAGES * _FILES)
+def _exported(path: Path, _changed: int) -> frozenset[str]:
+    """The names and types of the classes that a file exports, with slashes.
+
+    A robot may have many controllers, each of which is searched.
+
+    Raises:
+        OSError: The file cannot be read.
+    """
+    text = read_start(path, _BYTES).decode("utf-8", "replace")
     tags = _TAG.findall(_COMMENT.sub("", text))
-    return {each.replace("::", "/") for tag in tags for each in _NAME.findall(tag)}
+    return frozenset(each.replace("::", "/") for tag in tags for each in _NAME.findall(tag))

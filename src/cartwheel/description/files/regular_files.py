@@ -15,13 +15,26 @@ def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
     Raises:
         OSError: The file is missing, not a regular file, or larger than `most` bytes.
     """
-    if path.exists() and not path.is_file():
-        raise OSError(errno.EINVAL, "it is not a regular file")
-    with path.open("rb") as file:
-        content = file.read(most + 1)
+    content = read_start(path, most + 1)
     if len(content) > most:
         raise OSError(errno.EFBIG, f"it is larger than {most / 1e6:g} MB")
     return content
+
+
+def read_start(path: Path, most: int) -> bytes:
+    """The first bytes of a file.
+
+    Args:
+        path: The file.
+        most: Maximum number of bytes.
+
+    Raises:
+        OSError: The file is missing, or not a regular file.
+    """
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is not a regular file")
+    with path.open("rb") as file:
+        return file.read(most)
 
 
 def read_regular_text(path: Path, most: int = MOST_BYTES) -> str:
