@@ -7,6 +7,8 @@ from __future__ import annotations
 import pytest
 from tests.checks.seeded import ARM, EFFORT, IN_CONTROLLERS, ROS1, transmission
 
+from cartwheel.checks import controller_files
+
 WHEELS = """drive:
   type: diff_drive_controller/DiffDriveController
   left_wheel: left_wheel_joint
@@ -244,3 +246,19 @@ def test_a_mapping_may_merge_several_others(arm, received):
 
 def test_a_file_with_comments_only_is_read(arm, received):
     assert not received(arm, "# The joints are $(arg prefix)elbow.\n")
+
+
+def test_a_file_is_searched_once_for_the_nodes_of_ros2(tmp_path, monkeypatch):
+    """Each of its controllers asks whether the file is one of ROS 2."""
+    path = tmp_path / "controllers.yaml"
+    path.write_text("".join(f"c{n}: {{type: a/B}}\n" for n in range(9)))
+    search, searched = controller_files._ros2_nodes, []
+
+    def count(node, names):
+        searched.append(names)
+        return search(node, names)
+
+    file = controller_files.ControlFile(path=path, named=True)
+    monkeypatch.setattr(controller_files, "_ros2_nodes", count)
+    assert not any(each.file.is_ros2 for each in file.controllers)
+    assert searched.count(()) == 1

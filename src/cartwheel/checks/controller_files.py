@@ -141,7 +141,7 @@ class ControlFile:
         """Why the file cannot be read, or None."""
         return self._composed if isinstance(self._composed, Diagnostic) else None
 
-    @property
+    @cached_property
     def is_ros2(self) -> bool:
         """Whether the file contains ROS 2 node parameters."""
         return any(True for _ in _ros2_nodes(self.root, ()))

@@ -1,5 +1,7 @@
 """ROS 1's controllers whose names are paths below the namespace of their manager."""
 
+import time
+
 import pytest
 import yaml
 from tests.coded import coded
@@ -86,3 +88,14 @@ def test_the_topics_of_nested_controllers_contain_their_path(tmp_path):
         world.run(0.1)
         assert "/arm/lift/command" in {each.name for each in world.graph.topics()}
         assert coded(world, CONTROLLER_NOT_STARTED, controller="x/lift")
+
+
+def test_many_controllers_of_two_robots_do_not_take_long():
+    """CPU time. A comparison of each controller with each other one takes minutes."""
+    count = 30_000
+    spaces = {space: {f"{space}{n}": {"type": "a/B"} for n in range(count)} for space in "ab"}
+    begin = time.thread_time()
+    entries = ros1_entries(spaces, "file", "a")
+    assert len(entries) == 2 * count
+    assert as_named([f"x/a/a{n}" for n in range(count)], entries) == tuple(spaces["a"])
+    assert time.thread_time() - begin < 10.0

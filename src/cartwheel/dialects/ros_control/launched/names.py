@@ -17,6 +17,9 @@ from cartwheel.dialects.ros_control.files import (
 )
 from cartwheel.errors import PluginError
 
+_MOST_PARTS = 20
+"""Maximum number of parts of a name and its namespaces."""
+
 
 def ros1_entries(
     content: Mapping[str, Any], source: str, namespace: str = ""
@@ -34,18 +37,23 @@ def ros1_entries(
     """
     found = list(_ros1_entries(content, ()))
     own = tuple(part for part in namespace.split("/") if part)
-    inside = [path for path, _ in found if len(path) > len(own) and path[: len(own)] == own]
-    others = [path for path, _ in found if path not in inside] if own and inside else []
-    shared = own if own and inside else shared_space([path for path, _ in found])
-    spaces = dict.fromkeys(inside, own) | dict.fromkeys(others, shared_space(others))
+    inside = [each for each in found if len(each[0]) > len(own) and each[0][: len(own)] == own]
+    groups = [(shared_space([path for path, _ in found]), found)]
+    if own and inside:
+        others = [each for each in found if len(each[0]) <= len(own) or each[0][: len(own)] != own]
+        groups = [(own, inside), (shared_space([path for path, _ in others]), others)]
     entries: dict[str, ControllerEntry] = {}
-    for path, values in sorted(found, key=lambda each: each[0] in others):
-        space = spaces.get(path, shared) if others else shared
-        name = "/".join(path[len(space) :])
-        entry = ControllerEntry(
-            name=name, type=values["type"], values=values, namespace="/".join(space), source=source
-        )
-        entries.setdefault(name, entry)
+    for space, group in groups:
+        for path, values in group:
+            name = "/".join(path[len(space) :])
+            entry = ControllerEntry(
+                name=name,
+                type=values["type"],
+                values=values,
+                namespace="/".join(space),
+                source=source,
+            )
+            entries.setdefault(name, entry)
     return list(entries.values())
 
 
@@ -83,16 +91,25 @@ def as_named(names: Iterable[str], entries: Iterable[ControllerEntry]) -> tuple[
     listed = list(entries)
     known = {entry.name for entry in listed}
     paths = {entry.name: f"{entry.namespace}/{entry.name}".strip("/") for entry in listed}
+    whole: dict[str, list[str]] = {}
+    ends: dict[str, list[str]] = {}
+    for one, path in paths.items():
+        whole.setdefault(path, []).append(one)
+        for end in ends_of(path):
+            ends.setdefault(end, []).append(one)
     found: dict[str, None] = {}
-    for name in names:
-        plain = name.strip("/")
-        fitting = [
-            one
-            for one, path in paths.items()
-            if f"/{path}".endswith(f"/{plain}") or f"/{plain}".endswith(f"/{path}")
-        ]
+    for plain in dict.fromkeys(name.strip("/") for name in names):
+        shorter = (one for end in ends_of(plain) for one in whole.get(end, ()))
+        fitting = dict.fromkeys((*ends.get(plain, ()), *shorter))
         found |= dict.fromkeys([plain] if plain in known else fitting or [plain.rpartition("/")[2]])
     return tuple(found)
+
+
+def ends_of(path: str) -> Iterator[str]:
+    """A path and what remains of it without its first parts, up to a number of parts."""
+    parts = path.split("/")
+    for count in range(min(len(parts), _MOST_PARTS), 0, -1):
+        yield "/".join(parts[-count:])
 
 
 def named_in(

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import itertools
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from cartwheel.description.launches import LaunchUse, root_of
 from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import is_ros2, name_and_file, read_parameters
-from cartwheel.dialects.ros_control.launched.names import ros1_entries
+from cartwheel.dialects.ros_control.launched.names import ends_of, ros1_entries
 from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", ".world")
@@ -25,6 +26,8 @@ _MOST_TEXTS = 2000
 """Maximum number of such files that are read."""
 _MOST_FOLDERS = 5000
 """Maximum number of folders that are searched for them."""
+_MOST_NAMES = 10_000
+"""Maximum number of full names of the controllers of a launch file."""
 
 
 def unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnostic]:
@@ -90,22 +93,26 @@ def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Itera
     """
     if starter is None or not starter.sought or starter.absent:
         return
-    own = _paths(starter)
+    read = functools.cache(_parameters)
+    own = _paths(starter, read)
     missed = [each for each in starter.sought if own is not None and _full(*each) not in own]
     if own is None or not missed:
         return
     known: set[str] = set()
     for use in launches:
-        paths = _paths(use)
+        paths = _paths(use, read)
         if paths is None:
             return
         known |= paths.keys()
+    longer: dict[str, str] = {}
+    for path in own:
+        _, _, inner = path.partition("/")
+        for end in ends_of(inner) if inner else ():
+            longer.setdefault(end, path)
     for space, name in missed:
         if (wanted := _full(space, name)) in known:
             continue
-        found = next((path for path in own if path.endswith(f"/{name}")), None)
-        if found is None and space:
-            found = name if name in own else None
+        found = longer.get(name, name if space and name in own else None)
         if found is None:
             continue
         file = own[found]
@@ -118,30 +125,46 @@ def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Itera
         )
 
 
-def _paths(use: LaunchUse) -> dict[str, Path] | None:
+def _paths(
+    use: LaunchUse, read: Callable[[Path], Mapping[str, bool] | None]
+) -> dict[str, Path] | None:
     """The full names of the controllers in the files of a launch file, without the first slash.
 
-    None if a name or a namespace is uncertain.
+    None if a name or a namespace is uncertain, or if there are too many.
     """
     found: dict[str, Path] = {}
-    for space, path in use.places:
-        file = name_and_file(path)[1]
-        try:
-            content = read_parameters(path)
-        except PluginError:
+    for space, path in dict.fromkeys(use.places):
+        names = read(path)
+        if names is None or (names and UNKNOWN in space) or len(found) > _MOST_NAMES:
             return None
-        if is_ros2(content):
-            continue
-        single = file == path and file.stem in content and len(content) == 1
-        for entry in ros1_entries(content, str(path)):
-            name = f"{entry.namespace}/{entry.name}".strip("/")
-            if UNKNOWN in space or "$(" in name or (single and name == file.stem):
-                return None
+        file = name_and_file(path)[1]
+        for name, is_global in names.items():
             found[_full(space, name)] = file
-            # rosparam takes a key that begins with a slash as a global name.
-            if any(str(key).startswith("/") for key in content):
+            if is_global:
                 found[name] = file
     return found
+
+
+def _parameters(path: Path) -> dict[str, bool] | None:
+    """The names of ROS 1's controllers in a file, and whether they may be global names.
+
+    None if a name is uncertain.
+    """
+    file = name_and_file(path)[1]
+    try:
+        content = read_parameters(path)
+    except PluginError:
+        return None
+    if is_ros2(content):
+        return {}
+    single = file == path and file.stem in content and len(content) == 1
+    entries = ros1_entries(content, str(path))
+    names = [f"{entry.namespace}/{entry.name}".strip("/") for entry in entries]
+    if any("$(" in name or (single and name == file.stem) for name in names):
+        return None
+    # rosparam takes a key that begins with a slash as a global name.
+    is_global = any(str(key).startswith("/") for key in content)
+    return dict.fromkeys(names, is_global)
 
 
 def _full(space: str, name: str) -> str:
