@@ -61,3 +61,34 @@ def test_a_leader_without_limits_is_as_limited_as_its_own_leader(tmp_path):
     endless = joint("lead", "", kind="continuous")
     (reported,) = found(tmp_path, endless, joint("follow", 'lower="0" upper="1"', mimic(1)))
     assert reported.values["highest"] is None
+
+
+def test_limits_that_stand_in_for_none_are_not_reported(tmp_path):
+    endless = joint("lead", "", kind="continuous")
+    assert not found(tmp_path, endless, joint("follow", 'lower="-1e9" upper="1e9"', mimic(1)))
+    assert found(tmp_path, endless, joint("follow", 'lower="-9" upper="1e9"', mimic(1)))
+
+
+def test_a_gear_is_not_reported(tmp_path):
+    """Both of its joints stop where one of them does."""
+    turns = "<limit><lower>{0}</lower><upper>{1}</upper></limit>"
+    hinge = (
+        '<link name="{0}"/><joint name="{0}_joint" type="revolute"><parent>case</parent>'
+        "<child>{0}</child><axis><xyz>0 0 1</xyz>{1}</axis></joint>"
+    )
+    box = (
+        '<joint name="box" type="gearbox"><parent>large</parent><child>small</child>'
+        "<gearbox_ratio>3</gearbox_ratio>"
+        "<gearbox_reference_body>case</gearbox_reference_body>"
+        "<axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 0 1</xyz></axis2></joint>"
+    )
+    path = tmp_path / "gears.sdf"
+    path.write_text(
+        '<sdf version="1.9"><model name="gears"><link name="case"/>'
+        + hinge.format("large", turns.format(-1, 1))
+        + hinge.format("small", turns.format(-0.3, 0.3))
+        + box
+        + "</model></sdf>"
+    )
+    findings = cartwheel.check(path).findings
+    assert not [each for each in findings if each.code is MIMIC_OUT_OF_LIMITS]

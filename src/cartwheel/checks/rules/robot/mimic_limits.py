@@ -13,6 +13,8 @@ from cartwheel.errors import Diagnostic
 
 _SLACK = 0.02
 """Part of a follower's range by which its target may be outside: limits are often rounded."""
+_ENDLESS = 1e4
+"""rad or m; limits that no joint reaches, which stand in for none."""
 
 
 @rule(robot_codes.MIMIC_OUT_OF_LIMITS)
@@ -24,6 +26,8 @@ def mimic_limits(subject: Subject) -> Iterator[Diagnostic]:
             mimic = joint.mimic
             limits = stated_limits(joint, follows=True)
             if mimic is None or mimic.mutual or limits is None:
+                continue
+            if limits[0] <= -_ENDLESS and limits[1] >= _ENDLESS:
                 continue
             low, high = targets(mimic, robot.joints, lambda each: each.mimic)
             span = limits[1] - limits[0]
