@@ -9,8 +9,12 @@ import re
 import pytest
 import yaml
 
+from cartwheel.checks.controller_files import ControlFile
+from cartwheel.checks.robot import Robot
 from cartwheel.checks.sliding import Contact, base_motion
+from cartwheel.checks.stated_sizes import _of_controller
 from cartwheel.codes.robot import SKID_STEERING, WHEEL_BASE_MISMATCH, WHEEL_DIAMETER_MISMATCH
+from cartwheel.description import load_text
 
 BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1
 """m: between the axles, between the wheels, between the steered joints, of the wheels."""
@@ -700,3 +704,33 @@ def test_the_side_of_a_wheel_is_that_of_its_shape(bench, crossed):
     swapped = dict(zip(tags, reversed(tags.values()), strict=True))
     other = text.replace(drive, plugin("libgazebo_ros_diff_drive.so", **swapped))
     assert bench.find(other, "wheels-swapped")
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "multiplier"),
+    [
+        (
+            "diff_drive_controller/DiffDriveController",
+            "left_wheel: left, right_wheel: right, wheel_separation: 0.4",
+            "wheel_separation_multiplier",
+        ),
+        (
+            "four_wheel_steering_controller/FourWheelSteeringController",
+            "front_wheel: [left, right], rear_wheel: [left, right], track: 0.4",
+            "",
+        ),
+    ],
+)
+def test_only_multipliers_that_a_controller_has_are_advised(tmp_path, kind, parameters, multiplier):
+    wheels = "".join(
+        f'<link name="{name}_wheel"/><joint name="{name}" type="continuous"><parent link="base"/>'
+        f'<child link="{name}_wheel"/><origin xyz="0 {y} 0"/><axis xyz="0 1 0"/></joint>'
+        for name, y in (("left", 0.2), ("right", -0.2))
+    )
+    text = f'<robot name="robot"><link name="base"/>{wheels}</robot>'
+    robot = Robot(load_text(text, file="robot.urdf"), None)
+    path = tmp_path / "drive.yaml"
+    path.write_text(f"drive: {{type: {kind}, {parameters}}}\n")
+    (controller,) = ControlFile(path=path, named=True).controllers
+    apart = [each for each in _of_controller(robot, controller, ()) if each.measure == "apart"]
+    assert [each.multiplier for each in apart] == [multiplier]

@@ -61,6 +61,15 @@ def table(controller: Controller, *roles: Role) -> tuple[Row, ...]:
     return tuple(each for each in found if each.role in roles)
 
 
+def has_parameter(controller: Controller, name: str) -> bool:
+    """Whether the type of a controller has a parameter; False for an unknown type."""
+    try:
+        family = find_type(controller.kind, ros2=controller.file.is_ros2)
+    except UnknownNameError:
+        return False
+    return any(name in row.names for row in rows(family.parameters, ros2=controller.file.is_ros2))
+
+
 @cache
 def names_of(role: Role) -> frozenset[str]:
     """The last parts of all parameter names that have a role in any controller."""

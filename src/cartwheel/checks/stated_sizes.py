@@ -283,6 +283,8 @@ def _of_controller(
         if written is None or (value is not None and number is None) or not all(sides):
             continue
         name = next((each for each in spellings if controller.has(each)), spellings[0])
+        multiplier = f"{name}_multiplier"
+        scales = claimed.has_parameter(controller, multiplier) and not any(sided)
         general = times.number if times is not None else None
         # A negative multiplier of a side turns its wheels in the other direction.
         factors = [
@@ -299,7 +301,7 @@ def _of_controller(
             second=sides[1] if len(sides) == 2 else (),
             skids=len(sides[0]) > 1,
             factor=factor,
-            multiplier="" if any(sided) else f"{name.rpartition('/')[2]}_multiplier",
+            multiplier=multiplier.rpartition("/")[2] if scales else "",
             origin=written.origin,
             mark=written.text,
             write=written.replaced,
