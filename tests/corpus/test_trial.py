@@ -1569,6 +1569,21 @@ def test_a_part_that_hangs_down_to_the_ground_explains_why_a_base_is_slow(tried)
     verdict = tried(cart(0.1), FLAP.format(z=0.0), slippery)
     (drive, *_) = verdict.faults
     assert (drive.test, drive.code) == ("drive", BODY_ON_GROUND)
+
+
+def test_an_upright_arm_that_falls_only_when_the_base_drives_explains_why_it_is_slow(tried):
+    """The friction of its joint, 0.02 N m, holds the mast while it stands."""
+    slippery = "".join(
+        f'<gazebo reference="{name}"><mu1>0.05</mu1><mu2>0.05</mu2></gazebo>'
+        for name in ("left", "right")
+    )
+    mast = FLAP.format(z=0.0).replace("0.1 0 0", "0 0 0.15").replace("0.2 0.1 0.02", "0.02 0.1 0.3")
+    mast = mast.replace('lower="-1" upper="1"', 'lower="-3" upper="3"')
+    mast = mast.replace("</joint>", '<dynamics friction="0.02"/></joint>')
+    verdict = tried(cart(0.1), mast, slippery)
+    assert verdict.stand.state == "yes"
+    (drive, *_) = verdict.faults
+    assert (drive.test, drive.code) == ("drive", BODY_ON_GROUND)
     assert drive.reason.values["link"] == "flap"
     assert drive.reason.values["joint"] == "flap_joint"
 

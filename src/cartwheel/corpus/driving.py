@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from typing import Any, NamedTuple
 
 from cartwheel.api import Model, World
@@ -76,6 +76,7 @@ def drives(
     *,
     idle: Set[str],
     steered: bool,
+    look: Callable[[], None],
 ) -> Iterator[Drive]:
     """Drives on each topic with velocity commands, forward, sideways and turning, after a reset.
 
@@ -87,6 +88,7 @@ def drives(
         started: The controllers that run.
         idle: Nodes of controllers that do not run, whose topics are not tested.
         steered: The base cannot turn in place, so it turns while it drives forward.
+        look: Called at the end of each motion of a topic, before the next reset.
     """
     forward = min(VELOCITY, limits.forward)
     turn = min(TURN, limits.turn)
@@ -104,14 +106,16 @@ def drives(
             continue
         both = Motion(forward if steered else 0.0, 0.0, turn)
         (ahead, facing), (turned, _) = (
-            _driven(world, model, robot, info, (command, speed_up))
+            _driven(world, model, robot, info, (command, speed_up), look=look)
             for command in (Motion(forward, 0.0, 0.0), both)
         )
         drive = _drive_of(world, info, started)
         left = 0.0
         if sideways := _takes_sideways(model, robot, info, drive):
             command = Motion(0.0, forward, 0.0)
-            motion, _ = _driven(world, model, robot, info, (command, speed_up), facing=facing)
+            motion, _ = _driven(
+                world, model, robot, info, (command, speed_up), look=look, facing=facing
+            )
             left = motion.left
         yield Drive(
             topic=info.name,
@@ -167,6 +171,7 @@ def _driven(
     topic: TopicInfo,
     command: tuple[Motion, float],
     *,
+    look: Callable[[], None],
     facing: Facing | None = None,
 ) -> tuple[Motion, Facing]:
     """The velocity after a constant command, and the direction that counts as forward.
@@ -200,6 +205,7 @@ def _driven(
         ]
         if max(changes) < _SETTLED:
             break
+    look()
     return found, ahead
 
 

@@ -27,6 +27,8 @@ _SLID, _TURNED = 0.02, 0.2
 _LEVEL = 0.9
 """Largest vertical component of the axis of a joint that lifts."""
 _GRAVITY = 9.8
+_LOOKING, _INSTANTS = 0.1, 10
+"""Time in which loads are averaged, s, and the number of times at which they are taken."""
 
 
 def dragging(
@@ -35,7 +37,7 @@ def dragging(
     """Parts of arms without commands that rest on the ground beside the driven wheels.
 
     Args:
-        world: The world, with the robot at rest.
+        world: The world, with the robot at rest or at the end of a drive.
         model: The robot in the world.
         robot: Its description.
         started: The controllers that run.
@@ -50,15 +52,20 @@ def dragging(
     ]
     joints = [*wheel_joints(robot), *(robot.joints[name] for name in named)]
     wheels = {name for joint in joints for name in wheel_links(robot, joint)}
+    if not wheels:
+        return
+    # What is dragged jumps, so that the load at one instant may be none.
     loads: dict[str, float] = {}
-    for contact in world.contacts(model.name):
-        if contact.models[1] != model.name:
-            load = abs(float(np.dot(contact.force, contact.normal)))
-            loads[contact.links[0]] = loads.get(contact.links[0], 0.0) + load
+    for _ in range(_INSTANTS):
+        world.run(_LOOKING / _INSTANTS)
+        for contact in world.contacts(model.name):
+            if contact.models[1] != model.name:
+                load = abs(float(np.dot(contact.force, contact.normal))) / _INSTANTS
+                loads[contact.links[0]] = loads.get(contact.links[0], 0.0) + load
     weight = _GRAVITY * robot.description.mass
     for name, load in loads.items():
         holder = _holder(robot, name)
-        if name in wheels or holder is None or load < _CARRIES * weight or not wheels:
+        if name in wheels or holder is None or load < _CARRIES * weight:
             continue
         if held_by(world, model, holder.name) > _SLACK * weight * robot.size:
             continue

@@ -23,7 +23,7 @@ from cartwheel.corpus.poses import posed
 from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
 from cartwheel.corpus.rivals import hindered
 from cartwheel.corpus.thrusters import bursts, thrusts
-from cartwheel.corpus.verdict import Verdict
+from cartwheel.corpus.verdict import Drive, Verdict
 from cartwheel.corpus.worlds import load_from_world
 from cartwheel.description import load_robot
 from cartwheel.description.launches import (
@@ -238,21 +238,7 @@ def _moved(
     verdict = replace(verdict, topics=topics, silent=silent)
     yield verdict
     if not stood.fixed:
-        bases = driving.drives(
-            world,
-            model,
-            body,
-            within_speeds(stated_limits(robot, started), body, started),
-            started,
-            idle=_idle(world),
-            steered=_steered(robot, started),
-        )
-        verdict = replace(verdict, drives=tuple(bases))
-        if not all(drive.passes for drive in verdict.drives):
-            world.run(_LISTENING)
-            found = dragging(world, model, body, started)
-            apart = drives_apart(body, verdict.drives)
-            verdict = replace(verdict, observed=(*verdict.observed, *found, *apart))
+        verdict = _driven(verdict, world, model, body, started)
         yield verdict
         verdict = replace(verdict, flights=tuple(flights(world, model, robot)))
         yield verdict
@@ -263,6 +249,38 @@ def _moved(
         yield moved
     pushes = (*thrusts(world, model, robot), *bursts(world, model, robot))
     yield replace(moved, spins=(*moved.spins, *pushes))
+
+
+def _driven(
+    verdict: Verdict, world: World, model: Model, body: Robot, started: list[Controller]
+) -> Verdict:
+    """Adds the drives, and what rests on the ground at rest or at the end of a failed drive."""
+    robot = body.description
+    resting: list[Diagnostic] = []
+    seen: list[Diagnostic] = []
+    drives: list[Drive] = []
+    for drive in driving.drives(
+        world,
+        model,
+        body,
+        within_speeds(stated_limits(robot, started), body, started),
+        started,
+        idle=_idle(world),
+        steered=_steered(robot, started),
+        look=lambda: resting.extend(dragging(world, model, body, started)),
+    ):
+        drives.append(drive)
+        seen += resting if not drive.passes else ()
+        resting.clear()
+    verdict = replace(verdict, drives=tuple(drives))
+    if all(drive.passes for drive in drives):
+        return verdict
+    world.run(_LISTENING)
+    # An arm in unstable balance falls only while the robot drives.
+    seen = [*dragging(world, model, body, started), *seen]
+    found = {(each.values["link"], each.values["joint"]): each for each in reversed(seen)}
+    apart = drives_apart(body, drives)
+    return replace(verdict, observed=(*verdict.observed, *reversed(found.values()), *apart))
 
 
 def _joints_moved(
