@@ -327,3 +327,44 @@ def test_names_of_included_files_may_have_several_unknown_parts(folder):
         one_of_two_dot_xacro=robot,
     )
     assert "one_of_two.xacro" in found and "one_of_of_two_of_three.xacro" not in found
+
+
+MODEL = '<sdf version="1.6"><model name="{0}"><link name="{0}"/>{1}</model></sdf>'
+SENSOR = '<sensor name="s" type="camera"/>'
+
+
+def includes(*uris):
+    return "".join(f"<include><uri>{uri}</uri></include>" for uri in uris)
+
+
+def test_a_model_that_another_model_includes_is_a_part(folder):
+    joint = '<plugin name="p" filename="gz-sim-joint-position-controller-system"/>'
+    drive = '<plugin name="p" filename="gz-sim-diff-drive-system"/>'
+    fixed = "<joint name='j' type='fixed'><parent>world</parent><child>arm</child></joint>"
+    uris = ("model://eye", "gimbal", "model://base/model.sdf", "model://arm", "https://x/y/far")
+    found = folder(
+        eye__model_dot_sdf=MODEL.format("eye", SENSOR),
+        gimbal__model_dot_sdf=MODEL.format("gimbal", joint),
+        base__model_dot_sdf=MODEL.format("base", drive),
+        arm__model_dot_sdf=MODEL.format("arm", joint + fixed),
+        far__model_dot_sdf=MODEL.format("far", SENSOR),
+        own__model_dot_sdf=MODEL.format("own", SENSOR + includes("model://own")),
+        whole__model_dot_sdf=MODEL.format("whole", includes(*uris) + "<uri>model://lone</uri>"),
+        lone__model_dot_sdf=MODEL.format("lone", SENSOR),
+    )
+    names = ["arm", "base", "far", "lone", "own", "whole"]
+    assert found == [f"{name}/model.sdf" for name in names]
+
+
+@pytest.mark.parametrize("by", ["world", "launch"])
+def test_a_part_that_a_world_or_a_launch_file_spawns_is_a_robot(tmp_path, folder, by):
+    world = f'<sdf version="1.6"><world name="w">{includes("model://eye")}</world></sdf>'
+    folder(
+        eye__model_dot_sdf=MODEL.format("eye", SENSOR),
+        whole__model_dot_sdf=MODEL.format("whole", includes("model://eye")),
+        **({"w_dot_world": world} if by == "world" else {}),
+    )
+    eye = tmp_path / "eye" / "model.sdf"
+    launch = LaunchUse(file=tmp_path / "a.launch", description=eye, arguments={})
+    found = survey(tmp_path, launches=[launch] if by == "launch" else [])
+    assert eye in found.robots

@@ -1672,3 +1672,58 @@ def test_a_joint_that_gives_way_explains_why_a_robot_sinks(tmp_path, tried):
     (fault, *_) = verdict.faults
     assert (fault.test, fault.code) == ("stand", JOINTS_UNDRIVEN)
     assert fault.reason.values["joints"] == ("knee",)
+
+
+STAND = """<robot name="camera" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="plug" default="false"/>
+{box}
+<xacro:if value="$(arg plug)">
+  {plug}
+  <joint name="side" type="fixed"><parent link="base"/><child link="plug"/></joint>
+</xacro:if>{more}</robot>"""
+
+
+@pytest.mark.parametrize("simulated", [True, False])
+@pytest.mark.parametrize("device", [True, False])
+def test_arguments_for_rviz_are_not_used_for_a_robot_without_plugins(tmp_path, simulated, device):
+    """With its heavy plug, the camera tips over."""
+    box, plug = (
+        BOX.format(name=name, at=at, size="0.02 0.02 0.02")
+        for name, at in (("base", "0 0 0"), ("plug", "0.05 0 0.01"))
+    )
+    heavy = plug.replace('mass value="2"', 'mass value="9"')
+    more = "<gazebo><plugin name='p' filename='libgazebo_ros_p3d.so'/></gazebo>" * device
+    spawner = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-urdf -model c"/>'
+    files = {
+        "package.xml": "<package><name>camera</name></package>",
+        "camera.xacro": STAND.format(box=box, plug=heavy, more=more),
+        "a.launch": '<launch><param name="robot_description" command="xacro '
+        f'$(find camera)/camera.xacro plug:=true"/>{spawner * simulated}</launch>',
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    path = tmp_path / "camera.xacro"
+    verdict = try_robot(path, standing=1.0, launches=launches_near(tmp_path))
+    used = simulated or device
+    assert verdict.stands is not used
+    assert [fault.test for fault in verdict.faults] == ["stand"] * used
+
+
+def test_a_description_for_rviz_that_needs_its_arguments_need_not_stand(tmp_path):
+    """Nothing in it is for Gazebo, and its launch file starts no Gazebo."""
+    tall = BOX.format(name="base", at="0.2 0 0.5", size="0.02 0.02 0.02").replace(
+        "<collision>", '<collision><origin xyz="$(arg x) 0 0"/>', 1
+    )
+    files = {
+        "package.xml": "<package><name>camera</name></package>",
+        "camera.xacro": '<robot name="camera" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        f"{tall}</robot>",
+        "a.launch": '<launch><param name="robot_description" command="xacro '
+        '$(find camera)/camera.xacro x:=0.0"/></launch>',
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    path = tmp_path / "camera.xacro"
+    verdict = try_robot(path, standing=1.0, launches=launches_near(tmp_path))
+    assert verdict.loaded and not verdict.stands
+    assert verdict.good, verdict.faults

@@ -89,6 +89,20 @@ def faults(
     yield from _measured(verdict, description, findings, None if moved else idle)
 
 
+def has_devices(description: RobotDescription) -> bool:
+    """Whether a description contains plugins or sensors for Gazebo."""
+    return bool(description.plugins) or any(link.sensors for link in description.links)
+
+
+def _need_not_stand(verdict: Verdict, description: RobotDescription) -> bool:
+    """Whether a description is for other programs, such as RViz: nothing in it is for Gazebo, and
+    its launch file does not start Gazebo.
+    """
+    launch = verdict.launch
+    idle = not verdict.movers and not has_devices(description)
+    return launch is not None and not launch.simulated and idle
+
+
 def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | None:
     """Why Gazebo does not load a robot for it: its root link has no mass.
 
@@ -96,11 +110,10 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
     other programs, in which links need no mass. If it falls because no link has a collision, it is
     no robot for Gazebo in any case, and Gazebo reports the mass first.
     """
-    sensors = any(link.sensors for link in description.links)
     started = verdict.launch is not None and verdict.launch.simulated
     shapes = any(link.collisions for link in description.links)
     falls = verdict.stand is not None and falls_through(verdict.stand) and not shapes
-    if not (verdict.movers or description.plugins or sensors or started or falls):
+    if not (verdict.movers or has_devices(description) or started or falls):
         return None
     if coded(description.diagnostics, LEFT_OUT) is not None:
         # The missing part may contain the mass.
@@ -267,7 +280,7 @@ def _measured(
     children = {joint.name: joint.child for joint in description.joints}
     said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
-    if verdict.stand is not None and not verdict.stands:
+    if verdict.stand is not None and not (verdict.stands or _need_not_stand(verdict, description)):
         fallen = cause_of_fall(verdict.stand, description, (*said, *findings()), idle)
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:

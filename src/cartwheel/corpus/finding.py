@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -34,6 +34,11 @@ _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 _WORLDS = (".world", ".world.xacro", ".world.sdf")
 _ACTIVE = re.compile(r"<(?:plugin|sensor|include)\b")
 """Elements of an SDF model that is not scenery. An included model may contain the others."""
+_REFERENCE = re.compile(r"<(?:(/?)include\b|uri>\s*([^<>\s]{1,4096})\s*</uri>)")
+"""The beginning or end of an ``<include>``, or a ``<uri>``."""
+_TO_WORLD = re.compile(r"<(?:parent|child)>\s*world\s*<")
+_OF_ONE_JOINT = re.compile(r"joint")
+"""Names of movers of single joints, such as those of a gimbal."""
 _PLUGIN = re.compile(r"""<plugin\b[^<>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL)
 _DEFINED = {
     "property": r"""<(?:xacro:)?property\b[^<>]*?\bname\s*=\s*["']{}["']""",
@@ -56,7 +61,9 @@ Kind = Literal["macros", "part", "world", "scenery", "old version"]
 - ``part``: the file is a part of a robot: a description in a launch file includes it; or it is not
   complete, and another file includes it; or it refers to links, macros, properties or arguments
   that another file defines; or it has no link of its own, and its macros attach theirs to a link
-  that does not exist; or its ``<robot>`` has no name, and no plugin that moves it.
+  that does not exist; or its ``<robot>`` has no name, and no plugin that moves it; or it is an SDF
+  model that another model includes, but no world and no launch file, and that is not fixed to the
+  world and has no plugin that moves more than single joints.
 - ``world``: the file is a world.
 - ``scenery``: the file is an SDF model without plugins and sensors, such as a house.
 - ``old version``: the file of a model that its ``model.config`` does not choose.
@@ -107,6 +114,7 @@ def survey(
         launched=used,
         passed=frozenset(name for each in launches for name in each.arguments),
         parts=_included(text for path, text in texts.items() if path.resolve() in used),
+        mounted=_mounted(texts, [path for path, _ in worlds]),
         package_path=package_path,
     )
     kinds = {path: whole.kind(path) for path in texts}
@@ -146,6 +154,8 @@ class _Folder:
     package_path: Sequence[Path]
     parts: Sequence[re.Pattern[str]]
     """Patterns for the ends of the paths of files that launched descriptions include."""
+    mounted: Set[Path]
+    """Folders of the SDF models that other models include, but no world."""
 
     def kind(self, path: Path) -> Kind | None:
         """Why a file is not a robot; None for a robot."""
@@ -188,6 +198,8 @@ class _Folder:
         text = self.texts[path]
         if not launched and not _ACTIVE.search(text):
             return "scenery"
+        if not launched and path.parent in self.mounted and not _is_base(text):
+            return "part"
         return None
 
     def _is_elsewhere(self, path: Path, error: DescriptionError) -> bool:
@@ -239,6 +251,41 @@ def _missing_parents(root: Node) -> set[str]:
         if each.tag == "parent"
     }
     return parents - links - {"", "world"}
+
+
+def _mounted(texts: Mapping[Path, str], worlds: Sequence[Path]) -> Set[Path]:
+    """The folders of SDF models that other models include, but none of the worlds.
+
+    Gazebo finds ``model://NAME`` in a folder NAME.
+    """
+    named = {name for world in worlds for name in _models(text_of(world))}
+    users: dict[str, set[Path]] = {}
+    for path, text in texts.items():
+        if path not in worlds:
+            for name in _models(text):
+                users.setdefault(name, set()).add(path.parent)
+    return {
+        path.parent
+        for path in texts
+        if path.parent.name not in named and users.get(path.parent.name, set()) - {path.parent}
+    }
+
+
+def _models(text: str) -> Iterator[str]:
+    """The names of the models that an SDF file includes."""
+    inside = False
+    for found in _REFERENCE.finditer(text):
+        uri = found[2]
+        if uri is None:
+            inside = not found[1]
+        elif inside and not uri.startswith(("http://", "https://")):
+            yield uri.removesuffix("/model.sdf").rstrip("/").rpartition("/")[2]
+
+
+def _is_base(text: str) -> bool:
+    """Whether an SDF model is fixed to the world, or plugins move more than single joints of it."""
+    movers = [name for name in _PLUGIN.findall(text) if is_mover(name)]
+    return bool(_TO_WORLD.search(text)) or not all(_OF_ONE_JOINT.search(name) for name in movers)
 
 
 def _moves(text: str) -> bool:

@@ -12,7 +12,7 @@ from cartwheel.checks.checking import check
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, driving, motion
 from cartwheel.corpus.controlled import controlled_sides
-from cartwheel.corpus.diagnosis import faults
+from cartwheel.corpus.diagnosis import faults, has_devices
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flights import flights
 from cartwheel.corpus.gains import too_weak, undamped, weak_gains
@@ -90,13 +90,18 @@ def try_robot(
     launches = own.launches
     use = chosen(file, launches)
     verdict = replace(verdict, launch=use)
-    arguments = {**(use.arguments if use is not None else {}), **(arguments or {})}
+    given = dict(arguments or {})
+    arguments = {**(use.arguments if use is not None else {}), **given}
     try:
         is_inside = None
         if model:
             robot, is_inside = load_from_world(file, model, arguments, package_path)
         else:
             robot = load_robot(file, arguments=arguments, package_path=package_path)
+            if use is not None and not use.simulated and arguments != given:
+                default = _for_simulation(robot, file, given, package_path)
+                if default is not None:
+                    robot, arguments = default, given
         robot = with_published_control(robot, launches, package_path)
     except CartwheelError as error:
         reason = error.diagnostic()
@@ -140,6 +145,22 @@ def try_robot(
     findings = _Findings(file, arguments, package_path, controllers, find=find, is_inside=is_inside)
     verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
     return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
+
+
+def _for_simulation(
+    robot: RobotDescription, file: Path, given: Mapping[str, str], package_path: Sequence[Path]
+) -> RobotDescription | None:
+    """A robot with the default arguments, if those of a launch file are for other programs.
+
+    They are if the robot then has no plugins and no sensors. `given` contains the user's arguments.
+    None if the robot has some, or cannot be read without the arguments of the launch file.
+    """
+    if has_devices(robot):
+        return None
+    try:
+        return load_robot(file, arguments=given, package_path=package_path)
+    except CartwheelError:
+        return None
 
 
 def _again(verdict: Verdict, controllers: Sequence[Path], robot: RobotDescription) -> Verdict:
