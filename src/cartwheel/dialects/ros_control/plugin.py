@@ -208,10 +208,7 @@ class RosControl(ControlPlugin):
             if not is_name(name):
                 # Only the controller of this name fails in ROS, when it is loaded.
                 continue
-            before = self.graph.parameters.get(name)
-            if isinstance(before, dict) and isinstance(value, dict):
-                value = {**before, **value}  # noqa: PLW2901
-            self.graph.parameters.set(name, value)
+            self.graph.parameters.set(name, _merged(self.graph.parameters.get(name), value))
         return entries
 
     def _gains(self, joints: list[JointInterfaces]) -> dict[str, tuple[str, PidGains]]:
@@ -229,6 +226,13 @@ class RosControl(ControlPlugin):
                 settings = Settings(values, f"{path}/{joint.name}", f"/{self.namespace}")
                 gains[joint.name] = (moves[0], read_gains(settings))
         return gains
+
+
+def _merged(before: Any, value: Any) -> Any:
+    """A parameter after a file sets it: mappings are merged at all levels, as roslaunch does."""
+    if not isinstance(before, Mapping) or not isinstance(value, Mapping):
+        return value
+    return {**before, **{key: _merged(before.get(key), each) for key, each in value.items()}}
 
 
 def _below_root(content: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -180,6 +180,22 @@ def test_pid_gains_of_the_hardware_make_positions_efforts(bench):
     assert p * -angle == pytest.approx(-WEIGHT * math.cos(angle), rel=0.01)
 
 
+def test_the_gains_of_several_files_are_merged(bench):
+    """roslaunch sets each number as a parameter of its own, so a file replaces no mapping."""
+    body = beam("a", "world", axis="0 0 1") + beam("b", "world", axis="0 0 1", origin="0 1 1")
+    urdf = robot(
+        body + transmission("a_joint", "Position") + transmission("b_joint", "Position"), ROS1
+    )
+    more = {"gazebo_ros_control": {"pid_gains": {"b_joint": {"p": 7.0}, "a_joint": {"d": 2.0}}}}
+    made = bench(
+        urdf,
+        {"gazebo_ros_control": {"pid_gains": {"a_joint": {"p": 5.0, "d": 1.0}}}},
+        more,
+    )
+    gains = made.world.graph.parameters.get("/gazebo_ros_control/pid_gains")
+    assert gains == {"a_joint": {"p": 5.0, "d": 2.0}, "b_joint": {"p": 7.0}}
+
+
 def test_a_group_takes_one_value_for_each(bench):
     body = beam("a", "world") + beam("b", "world", origin="0 1 1")
     urdf = robot(
