@@ -4,38 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
-from cartwheel.codes import devices, files, robot, running, world
-from cartwheel.corpus.drive_causes import cause_of_drive, flywheel, is_free
+from cartwheel.codes import devices, robot, running, world
+from cartwheel.corpus.drive_causes import cause_of_drive, drives_on, flywheel, is_free
 from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through
-from cartwheel.corpus.faults import Fault, Test, coded, most_severe
-from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_plugins
+from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
+from cartwheel.corpus.missing_movers import missing_movers, unmanaged
 from cartwheel.corpus.verdict import Verdict
-from cartwheel.description.model import PluginTag, RobotDescription
+from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.dialects.ros_only import other_ros, other_tags
 from cartwheel.errors import Diagnostic
 
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
-_CONTROL = frozenset(
-    {
-        running.PLUGIN_LEFT_OUT,
-        devices.CONTROLLERS_FILE_UNREADABLE,
-        devices.CONTROLLERS_FILE_MISMATCH,
-        devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
-        devices.CONTROLLERS_FILE_ARGUMENT,
-        devices.CONTROL_WITHOUT_JOINTS,
-        devices.HARDWARE_UNKNOWN,
-        running.CONTROLLER_NOT_STARTED,
-    }
-)
-"""Reasons why no controller runs."""
-_BROADCASTER = "Broadcaster"
-"""End of the types of ROS 2's controllers that command nothing."""
-_ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
-"""Causes for which a controller does not start in ROS either, although another one works."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
 """Lengths in other units, with which shapes are inside each other or kilometres long."""
 _JOINTS = frozenset(
@@ -80,9 +61,10 @@ def faults(
     # Two plugins of a kind are one fault.
     held = bool([*_held_bases(verdict, description, findings)])
     missing = {
-        fault.subject: fault for fault in reversed([*_missing(verdict, description, held=held)])
+        fault.subject: fault
+        for fault in reversed([*missing_movers(verdict, description, held=held)])
     }
-    missing |= dict(_unmanaged(verdict, description, findings))
+    missing |= dict(unmanaged(verdict, description, findings))
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights
@@ -128,144 +110,6 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
     return None
 
 
-def _unmanaged(
-    verdict: Verdict,
-    description: RobotDescription,
-    findings: Callable[[], Sequence[Diagnostic]],
-) -> Iterator[tuple[str, Fault]]:
-    """Hardware for Gazebo of a robot that nothing moves because no plugin runs it, by name."""
-    if not description.ros2_control or verdict.movers:
-        return
-    for each in findings():
-        if each.code is devices.HARDWARE_WITHOUT_PLUGIN:
-            name = str(each.values["name"])
-            yield name, Fault(test="controller", subject=name, reason=each)
-
-
-def _missing(verdict: Verdict, description: RobotDescription, *, held: bool) -> Iterator[Fault]:
-    """Plugins that should move the robot and are missing, and controllers that did not start.
-
-    `held` is whether something that drives a base was not tested, because the base is fixed.
-    """
-    said = verdict.diagnostics
-    for tag in moving_plugins(description):
-        if is_known(tag):
-            reason = most_severe(
-                each
-                for each in said
-                if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
-                and each.values.get("plugin") == tag.filename
-            )
-            reason = reason or other_tags(description, tag)
-        else:
-            reason = devices.PLUGIN_UNKNOWN.diagnostic(
-                f'plugin "{tag.filename}" is not supported, so it has no effect',
-                severity="warning",
-                origin=tag.origin,
-                values={"name": tag.filename},
-            )
-        if reason is not None:
-            yield Fault(test="plugin", subject=short_name(tag.filename), reason=reason)
-    for name, reason in ignored_movers(description):
-        yield Fault(test="plugin", subject=name, reason=reason)
-    refused = {
-        each.values.get("controller"): each
-        for each in said
-        if each.code is running.CONTROLLER_NOT_STARTED
-        and each.values.get("cause") not in _ALTERNATIVE
-    }
-    for name in verdict.spawned:
-        if name in verdict.controllers:
-            continue
-        if name in refused and not _broadcasts(refused[name]):
-            reason = refused[name]
-            unknown = reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number
-            if unknown and not _is_prefixed(reason):
-                # The part that contains the joint may be in a file that is absent.
-                reason = coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
-            yield Fault(test="controller", subject=name, reason=reason)
-        unread = next((each for each in verdict.observed if _contains(each, name)), None)
-        if unread is not None:
-            yield Fault(test="controller", subject=name, reason=unread)
-    apart = [each for each in verdict.observed if _is_misplaced(each)]
-    for each in apart:
-        yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
-    if apart or held or verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
-        return
-    if verdict.failure is not None and verdict.controllers:
-        # The simulation stopped before the controllers were tested.
-        return
-    wheels = any(joint.turns for joint in description.joints)
-    lost = coded(said, frozenset({files.INCLUDE_ABSENT}))
-    if lost is not None and wheels and not verdict.movers:
-        yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)
-    replaced = [
-        each
-        for each in said
-        if each.code is devices.HARDWARE_NOT_SIMULATED and "hardware" in each.values
-    ]
-    # Such hardware may move a robot without joints, such as a quadrotor. Joints that have no
-    # controllers do not move with any hardware.
-    moves = any(joint.type != "fixed" for joint in description.joints)
-    stopped = replaced if verdict.controller_files or not moves else []
-    causes = (devices.CONTROLLER_UNDEFINED, devices.CONTROLLER_ONLY_LOADED)
-    undefined = [
-        each
-        for each in verdict.observed
-        if each.code in causes and managers(description, jointless=True)
-    ]
-    for each in undefined:
-        yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
-    for tag in managers(description, jointless=bool(replaced)):
-        reason = most_severe(stopped) or most_severe(
-            each for each in said if each.code in _CONTROL and _concerns(each, tag)
-        )
-        if reason is None and not undefined:
-            reason = other_ros(description, tag) or _uncommanded(verdict, tag)
-        if reason is not None:
-            yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
-
-
-def _is_misplaced(each: Diagnostic) -> bool:
-    """Whether a controller is started in another namespace than that of its parameters."""
-    return each.code is devices.CONTROLLER_UNDEFINED and "namespace" in each.values
-
-
-def _is_prefixed(refused: Diagnostic) -> bool:
-    """Whether the unknown joint of a controller has a prefix that the robot's joint has not, or
-    the other way round.
-    """
-    name, meant = (str(refused.values.get(key) or "") for key in ("name", "meant"))
-    return bool(name and meant) and (name.endswith(meant) or meant.endswith(name))
-
-
-def _uncommanded(verdict: Verdict, tag: PluginTag) -> Diagnostic:
-    """Why no controller of a manager commands a joint."""
-    started = tuple(name for name in verdict.spawned if name in verdict.controllers)
-    return uncommanded(tag, verdict.launch.file if verdict.launch is not None else None, started)
-
-
-def _contains(each: Diagnostic, controller: str) -> bool:
-    """Whether a diagnostic is about an unreadable file with this controller."""
-    names = each.values.get("controllers", ())
-    return (
-        each.code is devices.CONTROLLERS_FILE_UNREADABLE
-        and isinstance(names, tuple)
-        and controller in names
-    )
-
-
-def _broadcasts(refused: Diagnostic) -> bool:
-    """Whether a controller of unknown type only publishes, because its type says so."""
-    unknown = refused.values.get("cause") == devices.CONTROLLER_TYPE_UNKNOWN.number
-    return unknown and str(refused.values.get("name")).endswith(_BROADCASTER)
-
-
-def _concerns(each: Diagnostic, tag: PluginTag) -> bool:
-    """Whether a diagnostic may be about a plugin: it is not about another one."""
-    return each.values.get("plugin", tag.filename) == tag.filename
-
-
 def _measured(
     verdict: Verdict,
     description: RobotDescription,
@@ -288,6 +132,10 @@ def _measured(
         yield Fault(test="publish", subject=topic, reason=reason)
     for subject, reason in _held_bases(verdict, description, findings):
         yield Fault(test="drive", subject=subject, reason=reason)
+
+    def explaining(test: Test, subject: str) -> list[Diagnostic]:
+        return _explaining((*said, *findings()), verdict, description, (test, subject))
+
     pushed = any(drive.passes for drive in verdict.drives)
     for drive in verdict.drives:
         if pushed and not drive.passes and is_free(said, drive.topic):
@@ -296,12 +144,12 @@ def _measured(
         # A robot that fell cannot drive, nor one that its own wheels throw over.
         unsteady = fallen or flywheel((*said, *findings()), description)
         if not drive.follows:
-            found = _explaining((*said, *findings()), verdict, "drive", drive.topic)
+            found = explaining("drive", drive.topic)
             forward = cause_of_drive(found, 1.0 + drive.error)
             yield Fault(test="drive", subject=drive.topic, reason=forward or unsteady)
         if not drive.turns:
             reason = cause_of_drive(
-                _explaining((*said, *findings()), verdict, "turn", drive.topic),
+                explaining("turn", drive.topic),
                 1.0 + drive.error_turn,
                 turning=True,
                 arc=drive.turning == "arc",
@@ -311,20 +159,20 @@ def _measured(
                 reason = forward if forward.code is robot.WHEEL_DIAMETER_MISMATCH else None
             yield Fault(test="turn", subject=drive.topic, reason=reason or unsteady)
         if not drive.slides:
-            found = _explaining((*said, *findings()), verdict, "sideways", drive.topic)
+            found = explaining("sideways", drive.topic)
             reason = cause_of_drive(found, 1.0 + drive.error_sideways, sideways=True)
             yield Fault(test="sideways", subject=drive.topic, reason=reason or unsteady)
     for reach in verdict.reaches:
         if not reach.arrived and _is_started(reach.controller, verdict):
             # A robot that fell may lie on its joints.
             names = reach.joint, children.get(reach.joint, "")
-            found = _explaining((*said, *findings()), verdict, "reach", reach.joint)
+            found = explaining("reach", reach.joint)
             reason = _of_joint(found, *names) or fallen
             yield Fault(test="reach", subject=reach.joint, reason=reason)
     for spin in verdict.spins:
         if not spin.follows:
             names = spin.joint, children.get(spin.joint, "")
-            found = _explaining((*said, *findings()), verdict, "spin", spin.joint)
+            found = explaining("spin", spin.joint)
             reason = _of_joint(found, *names)
             yield Fault(test="spin", subject=spin.joint, reason=reason)
     for flight in verdict.flights:
@@ -333,11 +181,27 @@ def _measured(
 
 
 def _explaining(
-    found: Sequence[Diagnostic], verdict: Verdict, test: Test, subject: str
+    found: Sequence[Diagnostic],
+    verdict: Verdict,
+    description: RobotDescription,
+    failed: tuple[Test, str],
 ) -> list[Diagnostic]:
-    """The diagnostics that may explain a failed test, by what the tests showed."""
-    hindered = (test, subject) in verdict.hindered
-    return [each for each in found if hindered or each.code is not running.JOINT_DRIVEN_TWICE]
+    """The diagnostics that may explain a failed test, by what the tests showed.
+
+    `failed` contains the test, and the topic or joint.
+    """
+    test, subject = failed
+    hindered = failed in verdict.hindered
+    return [
+        each
+        for each in found
+        if (hindered or each.code is not running.JOINT_DRIVEN_TWICE)
+        and (
+            test not in BASES
+            or each.code not in (running.PLUGIN_LEFT_OUT, robot.DRIVE_JOINT_UNKNOWN)
+            or drives_on(each, subject, description, verdict.controllers)
+        )
+    ]
 
 
 def _held_bases(

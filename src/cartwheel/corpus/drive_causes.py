@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence, Set
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
 from cartwheel.checks.rules.wheels.wheel_separation import compensation
 from cartwheel.codes import robot, running
 from cartwheel.corpus.faults import most_severe
-from cartwheel.corpus.movers import reports
-from cartwheel.description.model import RobotDescription
+from cartwheel.corpus.movers import managers, reports
+from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Code, Diagnostic
 
@@ -29,6 +30,10 @@ _STUCK = 0.1
 """Predicted part of the turn rate up to which a robot may as well not turn at all."""
 _FLYWHEEL = 20.0
 """Ratio of a wheel's inertia to the largest that it can have, beyond which it may tip a robot."""
+_TOPIC = re.compile(r"^(?:(?:command|cmd)_?(?:vel_?)?(?:ros_?)?)?topic(?:_?name)?$", re.IGNORECASE)
+"""Names of the tags of drives with the topic of their commands."""
+_COMMANDS = "cmd_vel"
+"""The topic of a drive that states none."""
 _DRIVING = frozenset(
     {
         robot.DRIVE_JOINT_UNKNOWN,
@@ -205,6 +210,53 @@ def _only_measures(each: Diagnostic) -> bool:
     return each.code is running.PLUGIN_LEFT_OUT and reports(
         short_name(str(each.values.get("plugin", "")))
     )
+
+
+def drives_on(
+    fault: Diagnostic, topic: str, description: RobotDescription, controllers: Sequence[str]
+) -> bool:
+    """Whether a plugin that does not drive would have received the commands on a topic.
+
+    Args:
+        fault: The finding that it was left out, or that one of its joints does not exist.
+        topic: The topic.
+        description: The robot.
+        controllers: Names of the robot's controllers, which have topics of their own.
+    """
+    *spaces, name = topic.strip("/").split("/")
+    if spaces and spaces[-1] in controllers:
+        return False
+    others = managers(description, jointless=True)
+    return any(
+        _is_about(fault, tag) and tag not in others and name in _names(tag)
+        for tag in description.plugins
+    )
+
+
+def _is_about(fault: Diagnostic, tag: PluginTag) -> bool:
+    """Whether a finding is about a plugin."""
+    values = fault.values
+    if fault.code is running.PLUGIN_LEFT_OUT:
+        return tag.filename == values.get("plugin")
+    return any(
+        each.tag == values.get("tag") and each.text.strip() == values.get("joint")
+        for each in tag.element.children
+    )
+
+
+def _names(tag: PluginTag) -> set[str]:
+    """The last parts of the names of the topics on which a drive may receive commands."""
+    return {each.strip("/").rpartition("/")[2] for each in _topics(tag)}
+
+
+def _topics(tag: PluginTag) -> Iterator[str]:
+    stated = [each.text.strip() for each in tag.element.children if _TOPIC.match(each.tag)]
+    yield from stated or [_COMMANDS]
+    ros = tag.element.find("ros")
+    for each in ros.find_all("remapping") if ros is not None else ():
+        source, _, target = each.text.strip().partition(":=")
+        if source.rpartition("/")[2] == _COMMANDS:
+            yield target
 
 
 def _follows(ratio: float, expected: float) -> bool:

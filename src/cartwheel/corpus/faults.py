@@ -38,6 +38,8 @@ MOTION: frozenset[Test] = frozenset(
     {"drive", "turn", "sideways", "reach", "spin", "fly", "plugin", "controller", "simulate"}
 )
 """Tests of commanded motion."""
+BASES: frozenset[Test] = frozenset({"drive", "turn", "sideways"})
+"""Tests of bases, whose errors are relative to the command."""
 _OURS = frozenset(
     {
         UNCLASSIFIED,

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from cartwheel.checks.robot import Drive, Robot
 from cartwheel.codes.running import JOINT_DRIVEN_TWICE
-from cartwheel.corpus.faults import Test
+from cartwheel.corpus.faults import BASES, Test
 from cartwheel.corpus.movers import managers, reports
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import Element, PluginTag, RobotDescription
@@ -25,8 +25,6 @@ _CHANGE = 0.25
 _STIRS = 0.05
 """Smallest change of a base's speed that counts if the speed at least doubles, relative to the
 command."""
-_BASES = frozenset[Test]({"drive", "turn", "sideways"})
-"""Tests whose errors are relative to the command."""
 
 
 def hindered(
@@ -94,7 +92,7 @@ def _changes(test: Test, alone: float, both: float) -> bool:
     change = abs(alone - both)
     if change >= _CHANGE * abs(both):
         return True
-    return test in _BASES and change >= _STIRS and abs(1.0 + alone) >= 2.0 * abs(1.0 + both)
+    return test in BASES and change >= _STIRS and abs(1.0 + alone) >= 2.0 * abs(1.0 + both)
 
 
 def _drives(tag: PluginTag, drives: Sequence[Drive], joints: set[str]) -> bool:

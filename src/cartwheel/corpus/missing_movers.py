@@ -1,0 +1,173 @@
+"""What should move a robot and is missing: plugins, and controllers that did not start."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from cartwheel.checks.controller_claims import uncommanded
+from cartwheel.codes import devices, files, running
+from cartwheel.corpus.faults import Fault, coded, most_severe
+from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_plugins
+from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.model import PluginTag, RobotDescription
+from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.ros_only import other_ros, other_tags
+from cartwheel.errors import Diagnostic
+
+_CONTROL = frozenset(
+    {
+        running.PLUGIN_LEFT_OUT,
+        devices.CONTROLLERS_FILE_UNREADABLE,
+        devices.CONTROLLERS_FILE_MISMATCH,
+        devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+        devices.CONTROLLERS_FILE_ARGUMENT,
+        devices.CONTROL_WITHOUT_JOINTS,
+        devices.HARDWARE_UNKNOWN,
+        running.CONTROLLER_NOT_STARTED,
+    }
+)
+"""Reasons why no controller runs."""
+_BROADCASTER = "Broadcaster"
+"""End of the types of ROS 2's controllers that command nothing."""
+_ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
+"""Causes for which a controller does not start in ROS either, although another one works."""
+
+
+def unmanaged(
+    verdict: Verdict,
+    description: RobotDescription,
+    findings: Callable[[], Sequence[Diagnostic]],
+) -> Iterator[tuple[str, Fault]]:
+    """Hardware for Gazebo of a robot that nothing moves because no plugin runs it, by name."""
+    if not description.ros2_control or verdict.movers:
+        return
+    for each in findings():
+        if each.code is devices.HARDWARE_WITHOUT_PLUGIN:
+            name = str(each.values["name"])
+            yield name, Fault(test="controller", subject=name, reason=each)
+
+
+def missing_movers(
+    verdict: Verdict, description: RobotDescription, *, held: bool
+) -> Iterator[Fault]:
+    """Plugins that should move the robot and are missing, and controllers that did not start.
+
+    `held` is whether something that drives a base was not tested, because the base is fixed.
+    """
+    said = verdict.diagnostics
+    for tag in moving_plugins(description):
+        if is_known(tag):
+            reason = most_severe(
+                each
+                for each in said
+                if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
+                and each.values.get("plugin") == tag.filename
+            )
+            reason = reason or other_tags(description, tag)
+        else:
+            reason = devices.PLUGIN_UNKNOWN.diagnostic(
+                f'plugin "{tag.filename}" is not supported, so it has no effect',
+                severity="warning",
+                origin=tag.origin,
+                values={"name": tag.filename},
+            )
+        if reason is not None:
+            yield Fault(test="plugin", subject=short_name(tag.filename), reason=reason)
+    for name, reason in ignored_movers(description):
+        yield Fault(test="plugin", subject=name, reason=reason)
+    refused = {
+        each.values.get("controller"): each
+        for each in said
+        if each.code is running.CONTROLLER_NOT_STARTED
+        and each.values.get("cause") not in _ALTERNATIVE
+    }
+    for name in verdict.spawned:
+        if name in verdict.controllers:
+            continue
+        if name in refused and not _broadcasts(refused[name]):
+            reason = refused[name]
+            unknown = reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number
+            if unknown and not _is_prefixed(reason):
+                # The part that contains the joint may be in a file that is absent.
+                reason = coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
+            yield Fault(test="controller", subject=name, reason=reason)
+        unread = next((each for each in verdict.observed if _contains(each, name)), None)
+        if unread is not None:
+            yield Fault(test="controller", subject=name, reason=unread)
+    apart = [each for each in verdict.observed if _is_misplaced(each)]
+    for each in apart:
+        yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
+    if apart or held or verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
+        return
+    if verdict.failure is not None and verdict.controllers:
+        # The simulation stopped before the controllers were tested.
+        return
+    wheels = any(joint.turns for joint in description.joints)
+    lost = coded(said, frozenset({files.INCLUDE_ABSENT}))
+    if lost is not None and wheels and not verdict.movers:
+        yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)
+    replaced = [
+        each
+        for each in said
+        if each.code is devices.HARDWARE_NOT_SIMULATED and "hardware" in each.values
+    ]
+    # Such hardware may move a robot without joints, such as a quadrotor. Joints that have no
+    # controllers do not move with any hardware.
+    moves = any(joint.type != "fixed" for joint in description.joints)
+    stopped = replaced if verdict.controller_files or not moves else []
+    causes = (devices.CONTROLLER_UNDEFINED, devices.CONTROLLER_ONLY_LOADED)
+    undefined = [
+        each
+        for each in verdict.observed
+        if each.code in causes and managers(description, jointless=True)
+    ]
+    for each in undefined:
+        yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
+    for tag in managers(description, jointless=bool(replaced)):
+        reason = most_severe(stopped) or most_severe(
+            each for each in said if each.code in _CONTROL and _concerns(each, tag)
+        )
+        if reason is None and not undefined:
+            reason = other_ros(description, tag) or _uncommanded(verdict, tag)
+        if reason is not None:
+            yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _is_misplaced(each: Diagnostic) -> bool:
+    """Whether a controller is started in another namespace than that of its parameters."""
+    return each.code is devices.CONTROLLER_UNDEFINED and "namespace" in each.values
+
+
+def _is_prefixed(refused: Diagnostic) -> bool:
+    """Whether the unknown joint of a controller has a prefix that the robot's joint has not, or
+    the other way round.
+    """
+    name, meant = (str(refused.values.get(key) or "") for key in ("name", "meant"))
+    return bool(name and meant) and (name.endswith(meant) or meant.endswith(name))
+
+
+def _uncommanded(verdict: Verdict, tag: PluginTag) -> Diagnostic:
+    """Why no controller of a manager commands a joint."""
+    started = tuple(name for name in verdict.spawned if name in verdict.controllers)
+    return uncommanded(tag, verdict.launch.file if verdict.launch is not None else None, started)
+
+
+def _contains(each: Diagnostic, controller: str) -> bool:
+    """Whether a diagnostic is about an unreadable file with this controller."""
+    names = each.values.get("controllers", ())
+    return (
+        each.code is devices.CONTROLLERS_FILE_UNREADABLE
+        and isinstance(names, tuple)
+        and controller in names
+    )
+
+
+def _broadcasts(refused: Diagnostic) -> bool:
+    """Whether a controller of unknown type only publishes, because its type says so."""
+    unknown = refused.values.get("cause") == devices.CONTROLLER_TYPE_UNKNOWN.number
+    return unknown and str(refused.values.get("name")).endswith(_BROADCASTER)
+
+
+def _concerns(each: Diagnostic, tag: PluginTag) -> bool:
+    """Whether a diagnostic may be about a plugin: it is not about another one."""
+    return each.values.get("plugin", tag.filename) == tag.filename
