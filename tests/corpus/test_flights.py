@@ -6,7 +6,7 @@ import pytest
 
 from cartwheel.codes.devices import HARDWARE_NOT_SIMULATED
 from cartwheel.corpus import try_robot
-from cartwheel.corpus.hovering import drag_errors
+from cartwheel.corpus.flying.hovering import drag_errors
 from cartwheel.description import load_text
 
 BODY = (

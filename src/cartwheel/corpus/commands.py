@@ -11,11 +11,11 @@ from typing import Any
 
 from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
-from cartwheel.corpus.flights import MOST_ACTUATORS
+from cartwheel.corpus.flying.flights import MOST_ACTUATORS
+from cartwheel.corpus.flying.thrusters import thruster_topics
 from cartwheel.corpus.heading import rolling
 from cartwheel.corpus.loads import degree, resistance
 from cartwheel.corpus.motion import positions
-from cartwheel.corpus.thrusters import thruster_topics
 from cartwheel.corpus.verdict import Spin
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
+from cartwheel.corpus.flying.hovering import climbs, drag_errors
 from cartwheel.corpus.heading import FORWARD, heading
-from cartwheel.corpus.hovering import climbs, drag_errors
 from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.motion import positions
 from cartwheel.corpus.verdict import TOLERANCE, Drive

@@ -10,8 +10,8 @@ from cartwheel.api import Model, World
 from cartwheel.checks.gains import span
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
+from cartwheel.corpus.flying.thrusters import has_thrusters, is_in_space
 from cartwheel.corpus.loads import held_by, resistance
-from cartwheel.corpus.thrusters import has_thrusters, is_in_space
 from cartwheel.corpus.verdict import SHORT, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.ros_control.controller import Controller

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.api import Model, World
-from cartwheel.corpus.thrusters import has_thrusters, is_in_space
+from cartwheel.corpus.flying.thrusters import has_thrusters, is_in_space
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.geometry import Pose

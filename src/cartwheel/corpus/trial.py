@@ -14,7 +14,8 @@ from cartwheel.corpus import commands, driving, motion
 from cartwheel.corpus.controlled import controlled_sides
 from cartwheel.corpus.diagnosis import faults, has_devices
 from cartwheel.corpus.faults import Fault
-from cartwheel.corpus.flights import flights
+from cartwheel.corpus.flying.flights import flights
+from cartwheel.corpus.flying.thrusters import bursts, thrusts
 from cartwheel.corpus.gains import too_weak, undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.movers import STEERED, movers
@@ -22,7 +23,6 @@ from cartwheel.corpus.placing import HIGH, name_in, put, surroundings
 from cartwheel.corpus.poses import posed
 from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
 from cartwheel.corpus.rivals import hindered
-from cartwheel.corpus.thrusters import bursts, thrusts
 from cartwheel.corpus.verdict import Drive, Verdict
 from cartwheel.corpus.worlds import load_from_world
 from cartwheel.description import load_robot

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TypeVar
 
 from cartwheel.api import Model, World
-from cartwheel.corpus.flights import MOST_ACTUATORS
+from cartwheel.corpus.flying.flights import MOST_ACTUATORS
 from cartwheel.corpus.verdict import Spin
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named

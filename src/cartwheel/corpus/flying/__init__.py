@@ -1,0 +1,1 @@
+"""Aircraft, and what thrusts: propellers, thrusters of water and space."""
