@@ -1,7 +1,10 @@
 """The direction in which a base drives, by its wheels."""
 
 import pytest
+import yaml
 from tests.corpus.carts import cart, controlled, written
+from tests.dialects.ros_control.arms import ros2_parameters, ros2_plugin
+from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, car, four_wheels
 
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED
@@ -94,3 +97,33 @@ def test_a_robot_with_a_controller_may_face_backward(tmp_path, swapped):
     assert drive.measured == pytest.approx(0.2 if swapped else -0.2, rel=0.05)
     wrong = dict.fromkeys(("drive", "turn"), WHEEL_AXIS_MISALIGNED)
     assert {each.test: each.code for each in verdict.faults} == ({} if swapped else wrong)
+
+
+@pytest.mark.parametrize("swapped", [True, False])
+def test_a_robot_with_steered_wheels_may_face_backward(tmp_path, swapped):
+    """Its controller lists the right wheels first. On their own sides, only the axes are wrong."""
+    sides = ("left", "right") if swapped else ("right", "left")
+    settings = {
+        "type": "ackermann_steering_controller/AckermannSteeringController",
+        "traction_joints_names": [f"rear_{side}_joint" for side in sides],
+        "steering_joints_names": [f"front_{side}_steer" for side in sides],
+        "wheelbase": BASE,
+        "traction_track_width": TRACK,
+        "steering_track_width": TRACK,
+        "traction_wheels_radius": RADIUS,
+    }
+    file = tmp_path / "drive.yaml"
+    file.write_text(yaml.safe_dump(ros2_parameters(base=settings)))
+    wheels = {
+        name: (-x if swapped else x, y, steered)
+        for name, (x, y, steered) in four_wheels(steered=True).items()
+    }
+    text = car(wheels, ros2_plugin(file), file.read_text())
+    path = tmp_path / "car.urdf"
+    path.write_text(text.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>'))
+    verdict = try_robot(path, standing=1.0)
+    (drive,) = verdict.drives
+    assert drive.measured == pytest.approx(0.2 if swapped else -0.2, rel=0.05)
+    assert {each.test: each.code for each in verdict.faults} == (
+        {} if swapped else dict.fromkeys(("drive", "turn"), WHEEL_AXIS_MISALIGNED)
+    )

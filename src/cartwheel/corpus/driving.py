@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.flying.hovering import climbs, drag_errors
-from cartwheel.corpus.heading import FORWARD, heading
+from cartwheel.corpus.heading import BACKWARD, FORWARD, heading
 from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.motion import positions
 from cartwheel.corpus.verdict import TOLERANCE, Drive
@@ -105,8 +105,9 @@ def drives(
         if not info.drives or (info.subscribers and idle >= set(info.subscribers)):
             continue
         both = Motion(forward if steered else 0.0, 0.0, turn)
+        front = _front(info, started)
         (ahead, facing), (turned, _) = (
-            _driven(world, model, robot, info, (command, speed_up), look=look)
+            _driven(world, model, robot, info, (command, speed_up), look=look, facing=front)
             for command in (Motion(forward, 0.0, 0.0), both)
         )
         drive = _drive_of(world, info, started)
@@ -145,6 +146,12 @@ def _drive_of(
         ),
         None,
     )
+
+
+def _front(topic: TopicInfo, started: Sequence[Controller]) -> Facing | None:
+    """The forward direction of a robot whose controller shows that it faces along negative x."""
+    backward = any(each.faces_backward and each.node in topic.subscribers for each in started)
+    return BACKWARD if backward else None
 
 
 def _takes_sideways(

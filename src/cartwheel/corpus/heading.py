@@ -19,7 +19,7 @@ from cartwheel.checks.wheels import (
 )
 from cartwheel.description.solids import Floats
 
-FORWARD = (1.0, 0.0)
+FORWARD, BACKWARD = (1.0, 0.0), (-1.0, 0.0)
 _ROLLS = 0.2
 """rad/s; minimum speed of a rolling wheel."""
 _HORIZONTAL = 0.5

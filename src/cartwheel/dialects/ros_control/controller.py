@@ -36,6 +36,9 @@ class Controller(Component):
     """Names of the type in ROS 1 and ROS 2."""
     parameters: ClassVar[type]
     """Dataclass with fields from `parameter`."""
+    faces_backward: bool = False
+    """Whether a robot with steered wheels faces along negative x, as `configure` finds: its wheels
+    are on the other sides, and those that are driven roll there."""
 
     def __init__(
         self, name: str, type_name: str, settings: Settings, robot: ControlledRobot

@@ -8,20 +8,20 @@ from tests.coded import coded
 from tests.dialects.ros_control.arms import ROS1, transmission
 from tests.dialects.ros_control.cars import BASE, CORNERS, RADIUS, TRACK, car, heading
 
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, robot, running
 
 TYPE = "four_wheel_steering_controller/FourWheelSteeringController"
 
 
 class FourWheels:
-    def __init__(self, make, folder, **settings):
-        robot, file = folder / "car.urdf", folder / "drive.yaml"
+    def __init__(self, make, folder, *, edit=str, **settings):
+        path, file = folder / "car.urdf", folder / "drive.yaml"
         joints = "".join(
             transmission(f"{name}_joint", "Velocity") + transmission(f"{name}_steer", "Position")
             for name in CORNERS
         )
         places = {name: (x * BASE / 2, y * TRACK / 2, True) for name, (x, y) in CORNERS.items()}
-        robot.write_text(car(places, ROS1, (), joints))
+        path.write_text(edit(car(places, ROS1, (), joints)))
         names = {
             f"{axle}_{kind}": [f"{axle}_{side}_{end}" for side in ("left", "right")]
             for axle in ("front", "rear")
@@ -29,7 +29,7 @@ class FourWheels:
         }
         file.write_text(yaml.safe_dump({"base": {"type": TYPE, **names, **settings}}))
         self.world = make.world()
-        self.model = self.world.spawn(robot, z=RADIUS, controllers=[file])
+        self.model = self.world.spawn(path, z=RADIUS, controllers=[file])
         self.world.run(0.2)
 
     def twist(self, seconds, forward, turn):
@@ -145,3 +145,40 @@ def test_a_wheel_base_that_is_not_positive_is_reported(make, tmp_path):
     made = FourWheels(make, tmp_path, wheel_base=0.0)
     (reported,) = coded(made.world, running.CONTROLLER_NOT_STARTED)
     assert reported.values["parameter"] == "wheel_base"
+
+
+MIRRORED = {"front": "rear", "rear": "front", "left": "right", "right": "left"}
+
+
+@pytest.mark.parametrize(
+    ("names", "wrong"), [(MIRRORED, 0), ({"left": "right", "right": "left"}, 4), ({}, 4)]
+)
+def test_a_robot_that_faces_backward_has_no_reversed_axes(make, tmp_path, names, wrong):
+    """Its front axle and its left wheels are where the rear axle and the right ones of others are.
+
+    With the front axle in front, it would steer to the wrong side.
+    """
+
+    def joints(axle, end):
+        return [
+            f"{names.get(axle, axle)}_{names.get(side, side)}_{end}" for side in ("left", "right")
+        ]
+
+    settings = {
+        f"{axle}_{kind}": joints(axle, end)
+        for axle in ("front", "rear")
+        for kind, end in (("wheel", "joint"), ("steering", "steer"))
+    }
+
+    def edit(text):
+        return text.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>')
+
+    made = FourWheels(make, tmp_path, edit=edit, **settings)
+    assert len(coded(made.world, robot.WHEEL_AXIS_MISALIGNED)) == wrong
+    if not wrong:
+        made.twist(0.5, 0.3, 0.5)
+        begin = made.place
+        made.twist(2.0, 0.3, 0.5)
+        x, _, turn = made.moved(begin)
+        assert x < -0.4
+        assert turn == pytest.approx(1.0, rel=0.05)

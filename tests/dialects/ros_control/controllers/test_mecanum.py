@@ -171,3 +171,26 @@ def test_the_base_frame_may_be_off_the_wheels_centre(drive):
     assert reported.twist.twist.angular.z == pytest.approx(0.5, rel=0.05)
     assert math.hypot(reported.pose.pose.position.x, reported.pose.pose.position.y) < 0.01
     assert heading(reported) == pytest.approx(0.5 * 1.15, rel=0.15)
+
+
+@pytest.mark.parametrize("swapped", [True, False])
+def test_a_robot_that_faces_backward_has_no_reversed_axes(make, tmp_path, swapped):
+    """Its left front wheel is where the right rear wheel of others is."""
+    others = dict(zip(NAMES, reversed(NAMES) if swapped else NAMES, strict=True))
+    settings = {
+        "type": "mecanum_drive_controller/MecanumDriveController",
+        **{f"{name}_wheel_command_joint_name": f"{others[name]}_joint" for name in NAMES},
+        "kinematics": {
+            "wheels_radius": RADIUS,
+            "sum_of_robot_center_projection_on_X_Y_axis": REACH,
+        },
+    }
+
+    def edit(text):
+        return text.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>')
+
+    made = Car(make, tmp_path, four_wheels(), "reference", edit=edit, **settings)
+    found = coded(made.world, robot.WHEEL_AXIS_MISALIGNED)
+    assert [each.values.get("all") for each in found] == ([] if swapped else [True] * 4)
+    made.go(2.0, x=0.3)
+    assert made.place[0] == pytest.approx(-0.6, rel=0.1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -20,7 +21,9 @@ from cartwheel.dialects.ros_control.controllers.twist_command import TwistComman
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
     UP,
+    check_axes,
     check_axis,
+    faces_backward,
     joint_place,
     wheel_radius,
 )
@@ -115,15 +118,17 @@ class FourWheelSteeringController(Controller):
         steering = [
             self.claim(each, "position") for each in (*given.front_steering, *given.rear_steering)
         ]
-        for wheel in wheels:
-            check_axis(self, wheel.joint, LEFT)
+        driven = [wheel.joint for wheel in wheels]
+        self.faces_backward = self._faces_backward(driven)
+        if not self.faces_backward:
+            check_axes(self, dict.fromkeys(driven, LEFT))
         for joint in steering:
             check_axis(self, joint.joint, UP)
         window = given.window
         if not 1 <= window <= MOST_AVERAGED:
             wanted = f"between 1 and {MOST_AVERAGED:,}"
             raise self.settings.invalid("velocity_rolling_window_size", window, wanted)
-        front_left, front_right, rear_left, _ = (wheel.joint for wheel in wheels)
+        front_left, front_right, rear_left, _ = driven
         offset = self._distance(steering[0].joint, front_left)
         track = given.track or self._distance(front_left, front_right)
         config = FourSteeredConfig(
@@ -148,6 +153,14 @@ class FourWheelSteeringController(Controller):
         self._periodic = Periodic(given.publish_rate)
         self._wheels = FourSteeredWheels(config, wheels, steering, self._odometry.reckoning)
         self._forget()
+
+    def _faces_backward(self, driven: Sequence[str]) -> bool:
+        """Whether the robot faces along negative x: there are the front wheels, and all wheels are
+        on the other sides and roll there.
+        """
+        description = self.part.description
+        front, _, rear, _ = (joint_place(description, name)[0] for name in driven)
+        return front < rear and faces_backward(description, driven[0::2], driven[1::2])
 
     def _positive(self, name: str, value: float | None) -> float:
         if not value:

@@ -17,7 +17,8 @@ from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelCon
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
     FramePrefixParameters,
-    check_axis,
+    check_axes,
+    faces_backward,
     frame_prefix,
     joint_place,
     wheel_radius,
@@ -170,9 +171,9 @@ class MecanumDriveController(WheelController):
             for name in (given.front_left, given.front_right, given.rear_left, given.rear_right)
         ]
         names = [wheel.joint for wheel in self._joints]
-        for name in names:
-            check_axis(self, name, LEFT)
         description = self.part.description
+        if not faces_backward(description, names[0::2], names[1::2]):
+            check_axes(self, dict.fromkeys(names, LEFT))
         radius = given.radius or wheel_radius(description, names[0]) or 0.0
         reach = given.reach
         if not reach:
@@ -222,7 +223,7 @@ class MecanumDriveController(WheelController):
         push = self.robot.push if grips else None
         self._wheels = MecanumWheels(config, wheels, push, self._odometry.reckoning)
         if config.rolling.backward and config.rolling.heading:
-            # `check_axis` reports the wheels of a robot that faces along x.
+            # `check_axes` reports the wheels of a robot that faces along x.
             values = {"joint": names[0], "attribute": "backwards"}
             self.warn(robot.WHEEL_AXIS_MISALIGNED, BACKWARD, values=values)
         if not grips:

@@ -20,7 +20,7 @@ from cartwheel.dialects.ros_control.controllers.twist_command import TwistComman
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
-    check_axis,
+    check_axes,
     check_steering,
     joint_axis,
     joint_place,
@@ -150,6 +150,7 @@ class SteeringController(WheelController):
         claimed = [self.claim(name, "velocity") for name in traction]
         turned = [self.claim(name, "position") for name in steering]
         backward = self._faces_backward(traction, steering)
+        self.faces_backward = backward
         driven = self._left_first(claimed, backward=backward)
         steering_joints = self._left_first(turned, backward=backward)
         # The published state has the order of the parameter lists.
@@ -157,8 +158,8 @@ class SteeringController(WheelController):
         self._state = self.advertise("controller_state", _STATE)
         for joint in steering_joints:
             check_steering(self, joint.joint, traction[0], backward=backward)
-        for joint in driven:
-            check_axis(self, joint.joint, LEFT)
+        if not backward:
+            check_axes(self, dict.fromkeys((joint.joint for joint in driven), LEFT))
         for name, track, wheels in (
             ("traction_track_width", given.driven_track, traction),
             ("steering_track_width", given.steered_track, steering),
