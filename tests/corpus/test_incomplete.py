@@ -3,14 +3,22 @@
 import pytest
 from tests.corpus.carts import cart, plugin, written
 
-from cartwheel.codes.files import INCLUDE_ABSENT
-from cartwheel.codes.robot import BASE_WITHOUT_COLLISION, INERTIA_MISSING
+from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT
+from cartwheel.codes.robot import (
+    BASE_WITHOUT_COLLISION,
+    INERTIA_MISSING,
+    JOINTS_UNDRIVEN,
+    UNBALANCED,
+)
 from cartwheel.corpus import try_robot
 
 MASS = '<inertial><mass value="2"/><inertia ixx="0.02" iyy="0.02" izz="0.02"/></inertial>'
 COLLISION = '<collision><geometry><box size="0.3 0.15 0.06"/></geometry></collision>'
 XACRO = '<robot name="robot" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 INCLUDE = '<xacro:include filename="$(find no_such_package)/urdf/arm.xacro"/>'
+JOINT = (
+    '<joint name="j" type="fixed"><parent link="base"/><child link="foot"/></joint><xacro:foot/>'
+)
 CALL = '<xacro:no_such_arm parent="base"/>'
 
 
@@ -61,3 +69,62 @@ def test_a_robot_may_fall_because_a_part_is_missing_that_has_its_collisions(
     verdict = try_robot(expanded(tmp_path, *parts, body), standing=1.0)
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("stand", reason, "file")
+
+
+@pytest.mark.parametrize(
+    ("include", "call", "reason"),
+    [
+        ("", "", UNBALANCED),
+        ("feet", '<xacro:foot x="-0.2"/>', INCLUDE_ABSENT),
+        ("back", "", INCLUDE_ABSENT),
+        ("feet", JOINT, INCLUDE_ABSENT),
+        # A sensor carries no robot.
+        ("depth_camera", '<xacro:depth_camera parent="base"/>', UNBALANCED),
+    ],
+)
+def test_a_robot_may_tip_over_because_what_supports_it_is_missing(tmp_path, include, call, reason):
+    foot = COLLISION.replace("<collision>", '<collision><origin xyz="0.2 0 0"/>')
+    parts = [INCLUDE.replace("arm.xacro", f"{include}.xacro")] if include else []
+    verdict = try_robot(
+        expanded(tmp_path, *parts, f'<link name="base">{MASS}{foot}</link>', call), standing=1.0
+    )
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("stand", reason, "file")
+
+
+INERTIA = '<inertial><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+LIMB = (
+    f'<link name="limb">{INERTIA.replace("<mass", """<origin xyz="0.1 0 0.5"/><mass""")}'
+    "{collision}</link>"
+    '<joint name="shoulder" type="revolute"><parent link="base"/><child link="limb"/>'
+    '<origin xyz="0 0 0.05"/><axis xyz="0 1 0"/>'
+    '<limit lower="-2" upper="2" effort="9" velocity="9"/></joint>'
+)
+HAND = (
+    f'<link name="hand">{INERTIA}<collision><geometry><mesh filename="no_such.stl"/></geometry>'
+    '</collision></link><joint name="wrist" type="{kind}"><parent link="limb"/>'
+    '<child link="hand"/><origin xyz="0.02 0 1"/></joint>'
+)
+
+
+@pytest.mark.parametrize(
+    ("kind", "reason"), [("fixed", JOINTS_UNDRIVEN), ("continuous", FILE_MISSING)]
+)
+def test_a_missing_mesh_of_a_limb_that_gives_way_is_not_why_a_robot_falls(tmp_path, kind, reason):
+    """A wheel without its mesh may be, although a limb that gives way carries it."""
+    base = f'<link name="base">{MASS}{COLLISION}</link>'
+    limb = LIMB.replace("{collision}", "") + HAND.replace("{kind}", kind)
+    verdict = try_robot(written(tmp_path, base, limb), standing=3.0)
+    assert any(each.code is FILE_MISSING for each in verdict.diagnostics)
+    stand = next(each for each in verdict.faults if each.test == "stand")
+    assert (stand.code, stand.source) == (reason, "file")
+    if kind == "fixed":
+        assert stand.reason.values["joints"] == ("shoulder",)
+
+
+def test_a_missing_mesh_of_another_link_stays_the_reason(tmp_path):
+    mesh = '<collision><geometry><mesh filename="no_such.stl"/></geometry></collision>'
+    base = f'<link name="base">{MASS}{mesh}</link>'
+    verdict = try_robot(written(tmp_path, base, LIMB.replace("{collision}", "")), standing=3.0)
+    stand = next(each for each in verdict.faults if each.test == "stand")
+    assert stand.code is FILE_MISSING

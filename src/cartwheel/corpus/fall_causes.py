@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Sequence, Set
 
 from cartwheel.codes import files, robot
 from cartwheel.corpus.faults import coded, most_severe
@@ -28,6 +29,22 @@ _ABSENT = frozenset({files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREA
 """Reasons why a shape is missing."""
 LEFT_OUT = frozenset({files.INCLUDE_ABSENT, files.MACRO_ABSENT})
 """Reasons why a part of the robot is missing."""
+_LACKING = frozenset(
+    {
+        robot.WHEEL_WITHOUT_COLLISION,
+        robot.WHEELS_OFF_GROUND,
+        robot.INERTIA_MISSING,
+        robot.JOINT_LINK_UNKNOWN,
+        robot.UNBALANCED,
+        robot.JOINTS_UNDRIVEN,
+    }
+)
+"""Reasons that a missing part may explain: it may carry, balance or hold the robot."""
+_LIGHT = re.compile(
+    r"camera|kinect|realsense|_[dl]4[0-9]5|depth|lidar|laser|scan|velodyne|hokuyo|ouster|sonar|ultraso"
+    r"|sensor|material|colou?r|(?<![a-z])(?:zed|imu|gps|sick|astra)(?![a-z])"
+)
+"""Names of parts that carry no robot: sensors and materials."""
 _FALLEN = 1.0
 """m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
 ground."""
@@ -51,22 +68,19 @@ def cause_of_fall(
     lost = next((each for each in found if _is_body_lost(each, description)), None)
     if lost is not None:
         return lost
-    reasons = [each for each in found if _explains_fall(each)]
-    absent = coded(found, LEFT_OUT)
-    if absent is not None and any(each.code is robot.BASE_WITHOUT_COLLISION for each in reasons):
-        # The collisions may be in the part that was left out.
-        bodies = [each for each in reasons if each.code is robot.BASE_WITHOUT_COLLISION]
-        reasons = [absent, *(each for each in reasons if each not in bodies)]
-    if falls_through(stand):
-        bottomless = coded(reasons, frozenset({robot.BASE_WITHOUT_COLLISION}))
-        if bottomless is not None:
-            return bottomless
+    limp = _limp(found, description)
+    reasons = [each for each in found if _explains_fall(each) and not _is_carried(each, limp)]
     if idle is not None:
         left_out = {robot.JOINTS_UNDRIVEN}
         if any(_bends(joint) for joint in description.joints):
             # Limbs that nothing holds give way; links without an inertia have a mass here.
             left_out.add(robot.INERTIA_MISSING)
         reasons = [each for each in reasons if each.code not in left_out]
+    reasons = _without_lacking(reasons, found, description)
+    if falls_through(stand):
+        bottomless = coded(reasons, frozenset({robot.BASE_WITHOUT_COLLISION}))
+        if bottomless is not None:
+            return bottomless
     if any(each.code is robot.UNBALANCED for each in reasons):
         # It is reported only if no missing collision can carry the robot, and is computed with the
         # masses of all links.
@@ -77,6 +91,71 @@ def cause_of_fall(
 def falls_through(stand: Stand) -> bool:
     """Whether a robot sank so far that it fell through the ground."""
     return stand.sunk > _FALLEN * max(1.0, stand.size)
+
+
+def _without_lacking(
+    reasons: Sequence[Diagnostic], found: Sequence[Diagnostic], description: RobotDescription
+) -> list[Diagnostic]:
+    """The reasons, with that why a part is missing in the place of what the part may contain."""
+    absent = [each for each in found if each.code in LEFT_OUT]
+    heavy = [] if _only_hold(found, description) else [e for e in absent if not _is_light(e)]
+    for codes, parts in ((frozenset({robot.BASE_WITHOUT_COLLISION}), absent), (_LACKING, heavy)):
+        lost = most_severe(parts)
+        if lost is not None and any(each.code in codes for each in reasons):
+            return [lost, *(each for each in reasons if each.code not in codes)]
+    return [*reasons]
+
+
+def _only_hold(found: Sequence[Diagnostic], description: RobotDescription) -> bool:
+    """Whether the links that missing parts would define only connect other links."""
+    lost = {
+        each.values.get("link")
+        for each in found
+        if each.code is files.LINK_RECONNECTED and not each.values.get("parent")
+    }
+    parents = {joint.parent for joint in description.joints}
+    return bool(lost) and lost <= parents & {joint.child for joint in description.joints}
+
+
+def _is_light(absent: Diagnostic) -> bool:
+    """Whether a missing part is a sensor or materials, by its name."""
+    file = str(absent.values.get("file", ""))
+    # A package that exists is the robot's own, which may be named after a sensor.
+    names = [file.rpartition("/")[2]]
+    if not file or absent.values.get("kind") == "package":
+        names.append(str(absent.values.get("name", "")))
+    return any(_LIGHT.search(name.lower()) for name in names)
+
+
+def _limp(found: Sequence[Diagnostic], description: RobotDescription) -> set[str]:
+    """The links of limbs that were seen to give way, without the wheels that they carry."""
+    moved = {
+        name
+        for each in found
+        if each.code is robot.JOINTS_UNDRIVEN and "moved" in each.values
+        for name in _listed(each, "joints")
+    }
+    links = {joint.child for joint in description.joints if joint.name in moved}
+    held: dict[str, list[Joint]] = {}
+    for joint in description.joints:
+        held.setdefault(joint.parent, []).append(joint)
+    waiting = list(links)
+    while waiting:
+        for joint in held.get(waiting.pop(), ()):
+            if not joint.turns and joint.child not in links:
+                links.add(joint.child)
+                waiting.append(joint.child)
+    return links
+
+
+def _listed(each: Diagnostic, key: str) -> tuple[object, ...]:
+    values = each.values.get(key, ())
+    return values if isinstance(values, tuple) else ()
+
+
+def _is_carried(each: Diagnostic, limp: Set[str]) -> bool:
+    """Whether a missing shape belongs to a limb that gave way, with the shape or without it."""
+    return each.code in _ABSENT and each.values.get("link") in limp
 
 
 def _bends(joint: Joint) -> bool:

@@ -149,7 +149,10 @@ def gave_way(
             f"{why}, so the robot rolls"
             if robot.joints[most].turns
             else f'{why}, so they give way: "{most}" moved by {found[most]:.2g}',
-            values={"joints": tuple(found)},
+            values={
+                "joints": tuple(found),
+                **({} if robot.joints[most].turns else {"moved": found[most]}),
+            },
             origin=robot.joints[most].origin,
             hint=f'Command "{waiting[most]}" and the others at the start.' if wait else "",
         )
