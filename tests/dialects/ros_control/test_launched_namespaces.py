@@ -54,7 +54,7 @@ def misplaced(verdict):
 def test_controllers_whose_parameters_are_elsewhere_do_not_start(arm):
     bot = arm({"arm_controllers": {"move": MOVE}}, LOAD.format(""), spawner("arm"))
     verdict = try_robot(bot, standing=1.0)
-    assert misplaced(verdict) == [("/arm/move", "/arm_controllers/move")]
+    assert misplaced(verdict) == [("/arm", "/arm_controllers")]
     assert verdict.controllers == verdict.reaches == ()
     (fault,) = verdict.faults
     assert (fault.test, fault.subject, fault.source) == ("controller", "move", "file")
@@ -107,14 +107,33 @@ def test_of_several_controllers_those_start_whose_parameters_are_found(arm):
     assert [each.subject for each in verdict.faults] == ["move"]
 
 
+@pytest.mark.wording
+def test_controllers_with_the_same_namespaces_are_one_problem(arm):
+    names = ["move", *(f"state{index}" for index in range(5))]
+    content = {"x": {"move": MOVE, **dict.fromkeys(names[1:], STATES)}, "y": {"last": STATES}}
+    verdict = try_robot(
+        arm(content, LOAD.format(""), spawner("arm", " ".join([*names[1:], "last"]))), standing=1.0
+    )
+    assert misplaced(verdict) == [("/arm", "/x"), ("/arm", "/y")]
+    several, one = (each for each in verdict.observed if each.code is CONTROLLER_UNDEFINED)
+    assert several.values["controllers"] == tuple(names)
+    assert '"move", "state0", "state1", "state2" and 2 more, whose' in several.message
+    assert 'parameters in "/arm/last", but "arm.yaml" sets "/y/last"' in one.message
+    assert verdict.controllers == ()
+    assert [(each.test, each.subject) for each in verdict.faults] == [
+        ("controller", "move"),
+        ("controller", "last"),
+    ]
+
+
 def test_only_a_launch_file_that_is_started_keeps_controllers_from_starting(arm):
     bot = arm({"x": {"move": MOVE}}, LOAD.format(""), spawner("arm"))
     with cw.World("empty", lenient=True) as world:
         world.spawn(bot, controllers="auto")
-        assert coded(world, CONTROLLER_UNDEFINED, controller="move", stated="/x/move")
+        assert coded(world, CONTROLLER_UNDEFINED, controller="move", stated="/x")
         world.run(0.1)
         assert "/arm/move/command" in {each.name for each in world.graph.topics()}
     with cw.launch(bot.parent / "arm.launch", lenient=True) as world:
-        assert coded(world, CONTROLLER_UNDEFINED, controller="move", stated="/x/move")
+        assert coded(world, CONTROLLER_UNDEFINED, controller="move", stated="/x")
         world.run(0.1)
         assert "/arm/move/command" not in {each.name for each in world.graph.topics()}

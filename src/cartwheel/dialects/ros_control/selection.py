@@ -29,6 +29,7 @@ from cartwheel.dialects.ros_control.files import for_robot, read_parameters
 from cartwheel.dialects.ros_control.launched.names import as_named, named_in
 from cartwheel.dialects.ros_control.launched.problems import (
     misplaced,
+    misplaced_names,
     only_loaded,
     undefined,
     unreadable,
@@ -156,7 +157,7 @@ def selection(
     idle = () if starting is None else named_in(starting.loaded, files, robot)
     apart = tuple(misplaced(starting, launches)) if is_of_ros1(robot) else ()
     if apart and not tolerant:
-        wrong = named_in((str(each.values["controller"]) for each in apart), files, robot)
+        wrong = named_in(itertools.chain(*map(misplaced_names, apart)), files, robot)
         names = tuple(name for name in names if name not in wrong)
         files = files if names else ()
     problems = (*lost, *reported, *apart, *only_loaded(starting))

@@ -24,6 +24,8 @@ _TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", 
 """Ends of the names of files that may contain parameters of controllers, also within a tag."""
 _MOST_TEXTS = 2000
 """Maximum number of such files that are read."""
+_SHOWN = 4
+"""Maximum number of controllers that a message lists."""
 _MOST_FOLDERS = 5000
 """Maximum number of folders that are searched for them."""
 _MOST_NAMES = 10_000
@@ -84,6 +86,8 @@ def undefined(
 def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Iterator[Diagnostic]:
     """Controllers that a launch file starts in another namespace than that of their parameters.
 
+    Controllers with the same two namespaces are one problem.
+
     Only what the launch file certainly states counts, and only parameters that no launch file loads
     into the namespace in which the controller manager looks for them.
 
@@ -109,20 +113,55 @@ def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Itera
         _, _, inner = path.partition("/")
         for end in ends_of(inner) if inner else ():
             longer.setdefault(end, path)
+    apart: dict[tuple[str, str, Path], dict[str, None]] = {}
     for space, name in missed:
-        if (wanted := _full(space, name)) in known:
+        if _full(space, name) in known:
             continue
         found = longer.get(name, name if space and name in own else None)
         if found is None:
             continue
-        file = own[found]
-        yield CONTROLLER_UNDEFINED.diagnostic(
-            f'"{starter.file.name}" starts the controller "{name}", whose controller manager looks '
-            f'for its parameters in "/{wanted}", but "{file.name}" sets "/{found}"',
-            origin=Origin(file=str(file)),
-            values={"controller": name, "namespace": f"/{wanted}", "stated": f"/{found}"},
-            hint="The namespace in the file and that of the spawner must be equal.",
+        stated = found.removesuffix(name).rstrip("/")
+        apart.setdefault((space.strip("/"), stated, own[found]), {})[name] = None
+    for (space, stated, file), names in apart.items():
+        yield _misplaced(starter, file, [*names], f"/{space}", f"/{stated}")
+
+
+def _misplaced(
+    starter: LaunchUse, file: Path, names: Sequence[str], wanted: str, stated: str
+) -> Diagnostic:
+    """The diagnostic for controllers with parameters in the namespace `stated`, not `wanted`."""
+    first, *others = names
+    if others:
+        listed = ", ".join(f'"{name}"' for name in names[:_SHOWN])
+        more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+        message = (
+            f'"{starter.file.name}" starts the controllers {listed}{more}, whose controller '
+            f'manager looks for their parameters in "{wanted}", but "{file.name}" sets them in '
+            f'"{stated}"'
         )
+    else:
+        one, other = (f"/{_full(space, first)}" for space in (wanted, stated))
+        message = (
+            f'"{starter.file.name}" starts the controller "{first}", whose controller manager '
+            f'looks for its parameters in "{one}", but "{file.name}" sets "{other}"'
+        )
+    return CONTROLLER_UNDEFINED.diagnostic(
+        message,
+        origin=Origin(file=str(file)),
+        values={
+            "controller": first,
+            "controllers": tuple(names),
+            "namespace": wanted,
+            "stated": stated,
+        },
+        hint="The namespace in the file and that of the spawner must be equal.",
+    )
+
+
+def misplaced_names(problem: Diagnostic) -> tuple[str, ...]:
+    """The controllers in a diagnostic of `misplaced`."""
+    names = problem.values["controllers"]
+    return tuple(map(str, names)) if isinstance(names, tuple) else ()
 
 
 def _paths(
