@@ -192,6 +192,82 @@ def test_a_variable_that_may_have_different_values_is_reported(
     assert all((each.values["what"], each.values["name"]) == ("variable", "name") for each in found)
 
 
+EXPRESSION = """
+x = os.environ["KIND"] == "x"
+
+def generate_launch_description():
+    log = "debug" if x else "info"
+    file = os.path.join(get_package_share_directory("bot"), "urdf", {file})
+    return LaunchDescription([
+        LogInfo(msg=log),
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             arguments=["--log-level", log],
+             parameters=[{{"robot_description": Command(["xacro ", file, " size:=", {size}])}}]),
+        Node(package="ros_gz_sim", executable="create",
+             arguments=["-topic", "robot_description", "-z", {z}]),
+        Node(package="controller_manager", executable="spawner", arguments=[{controller}]),
+    ] + {more})
+"""
+PLAIN = {"file": '"bot.xacro"', "size": '"1"', "z": '"0.1"', "controller": '"move"', "more": "[]"}
+
+
+@pytest.mark.parametrize(
+    ("changed", "line"),
+    [
+        ({}, None),
+        ({"file": '"bot.xacro" if x else "other.urdf"'}, 6),
+        ({"file": '"bot.xacro" if x else "bot.xacro"'}, None),
+        ({"size": '"1" if x else "2"'}, 11),
+        ({"size": '"1" if True else "2"'}, None),
+        ({"z": '"0.1" if x else "0.2"'}, 13),
+        ({"controller": '"move" if x else "hold"'}, 14),
+        ({"controller": '"move", *([] if not x else ["--inactive"])'}, 14),
+        ({"more": '([Node(package="rviz2", executable="rviz2")] if x else [])'}, None),
+    ],
+)
+def test_a_conditional_expression_that_decides_what_is_started_is_reported(
+    bot: Path, changed: dict[str, str], line: int | None
+) -> None:
+    file = written(bot, "a.launch.py", EXPRESSION.format(**{**PLAIN, **changed}))
+    start = read_launch(file, {})
+    (model,) = start.models
+    assert (model.description.name, model.use.arguments) == ("bot.xacro", {"size": "1"})
+    assert (model.spawn.place, model.use.spawned) == ({"z": 0.1}, ("move",))
+    found = coded(start, LAUNCH_VALUE_UNKNOWN)
+    places = [(each.origin.file, each.origin.line, each.values["used"]) for each in found]
+    assert places == ([] if line is None else [(str(file), line, str(line))])
+    assert all(each.values["what"] == "expression" for each in found)
+
+
+def test_a_conditional_expression_may_be_in_a_default_or_an_included_file(bot: Path) -> None:
+    default = """
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("size", default_value="1" if os.environ["KIND"] else "2"),
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": Command(
+                 ["xacro ", os.path.join(get_package_share_directory("bot"), "urdf/bot.xacro"),
+                  " size:=", LaunchConfiguration("size")])}]),
+    ])
+"""
+    inner = written(bot, "inner.launch.py", default)
+    outer = written(
+        bot,
+        "outer.launch.py",
+        """
+def generate_launch_description():
+    return LaunchDescription([IncludeLaunchDescription(PythonLaunchDescriptionSource(
+        os.path.join(get_package_share_directory("bot"), "launch", "inner.launch.py")))])
+""",
+    )
+    for file in (inner, outer):
+        start = read_launch(file, {})
+        assert start.models[0].use.arguments == {"size": "1"}
+        (found,) = coded(start, LAUNCH_VALUE_UNKNOWN, what="expression")
+        assert (found.origin.file, found.origin.line) == (str(inner), 4)
+    assert not coded(read_launch(inner, {"size": "3"}), LAUNCH_VALUE_UNKNOWN)
+
+
 def test_a_branch_does_not_know_the_variables_of_the_other(bot: Path) -> None:
     branches = [IF, '    part = "other"', "else:", '    name = f"{part}.xacro"']
     text = VARIABLE.format(branches="\n    ".join(["part = 'bot'", *branches]))

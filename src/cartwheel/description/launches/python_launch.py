@@ -52,7 +52,7 @@ from cartwheel.description.launches.python_values import (
     path_of,
     text,
 )
-from cartwheel.description.launches.python_variables import Uncertain, Variables
+from cartwheel.description.launches.python_variables import Place, Uncertain, Variables
 from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import Facts
 from cartwheel.description.launches.variants import SUFFIXES
@@ -81,7 +81,13 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
         path,
         {},
         arguments,
-        Facts(find=facts.find, read=_ignore, home=facts.home, effort=facts.effort),
+        Facts(
+            find=facts.find,
+            read=_ignore,
+            home=facts.home,
+            effort=facts.effort,
+            reversed=facts.reversed,
+        ),
         depth,
     )
     defaults.file(tree)
@@ -318,7 +324,7 @@ class _Reader:
         if isinstance(node, ast.UnaryOp | ast.BoolOp | ast.Compare):
             return self._logical(node)
         if isinstance(node, ast.IfExp):
-            return self.value(node.orelse if self._holds(node.test) is False else node.body)
+            return self._conditional(node)
         if isinstance(node, ast.Attribute):
             value = self.value(node.value)
             if node.attr == "parent" and isinstance(value, str):
@@ -337,6 +343,15 @@ class _Reader:
         if isinstance(node, ast.Call):
             return self._call(node)
         return NOTHING
+
+    def _conditional(self, node: ast.IfExp) -> Any:
+        """The value of ``a if condition else b``: a if the condition is unknown, which is noted."""
+        holds = self._holds(node.test)
+        if holds is None:
+            place = Place(self._path, node.lineno, node.col_offset)
+            holds = place not in self._facts.reversed
+            self._facts.conditionals.setdefault(place, node.body.lineno)
+        return self.value(node.body if holds else node.orelse)
 
     def _logical(self, node: ast.UnaryOp | ast.BoolOp | ast.Compare) -> Any:
         """The value of ``not``, ``and``, ``or`` or a comparison; that of ``a or b`` is a or b."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from cartwheel.description.launches.effort import Effort
@@ -17,6 +18,14 @@ class Uncertain:
     what: Literal["return", "variable"]
     used: int
     """The line of the value that is used."""
+
+
+class Place(NamedTuple):
+    """Where an expression is in a launch file in Python."""
+
+    file: Path
+    line: int
+    column: int
 
 
 class Choice(NamedTuple):

@@ -15,6 +15,7 @@ from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.python_launch import read_python
+from cartwheel.description.launches.python_variables import Place
 from cartwheel.description.launches.use import Facts
 from cartwheel.description.launches.variants import beside
 from cartwheel.description.launches.xml_launch import read_xml
@@ -64,10 +65,30 @@ def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterato
                 yield from uses_of(path, other, given.values())
 
 
-def facts_of(path: Path, packages: Packages, arguments: Mapping[str, str], effort: Effort) -> Facts:
-    """The contents of a launch file that is started with these arguments."""
-    home = package_above(path.parent)
-    facts = Facts(find=packages.found, read=_read, home=home, effort=effort, file=path)
+def facts_of(
+    path: Path,
+    packages: Packages,
+    arguments: Mapping[str, str],
+    effort: Effort,
+    others: Collection[Place] = (),
+) -> Facts:
+    """The contents of a launch file that is started with these arguments.
+
+    Args:
+        path: The launch file.
+        packages: Finds packages.
+        arguments: Its arguments.
+        effort: What reading it may cost.
+        others: Expressions with an unknown condition that have their other value.
+    """
+    facts = Facts(
+        find=packages.found,
+        read=_read,
+        home=package_above(path.parent),
+        effort=effort,
+        file=path,
+        reversed=others,
+    )
     _read(path, arguments, facts, 0)
     return facts
 

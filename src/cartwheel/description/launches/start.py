@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ast
+import functools
 import itertools
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
@@ -17,6 +18,7 @@ from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
+from cartwheel.description.launches.python_variables import Place
 from cartwheel.description.launches.search import facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
 from cartwheel.description.launches.use import ABSENT, Facts
@@ -28,6 +30,8 @@ T = TypeVar("T")
 _WHY = "because launch files are read, but not executed"
 _SHOWN = 4
 """Maximum number of missing files and packages in a hint."""
+_MOST_TRIED = 16
+"""Maximum number of expressions whose other value is tried."""
 _ENDS = (".launch", ".launch.xml", ".py")
 _PARTS = {"place": "a part of the pose", "name": "the name", "namespace": "the namespace"}
 """What may be unknown of a model."""
@@ -97,19 +101,12 @@ def read_launch(
             hint="" if missing else "Its name must end in .launch, .launch.xml or .py.",
         )
     effort = Effort()
+    read = functools.partial(facts_of, file, Packages(file, package_path), arguments, effort)
     try:
-        facts = facts_of(file, Packages(file, package_path), arguments, effort)
-        uses = [each for each in uses_of(file, facts) if each.description is not None]
+        facts = read()
+        models, lost = _models(file, facts)
     except TooCostlyError:
         raise _failure(file, "reading the launch file takes too long") from None
-    found = list(_described(facts, uses))
-    models = tuple(
-        LaunchedModel(description=use.description, use=use, spawn=spawn, is_shown=not facts.spawns)
-        for spawn, use in found
-        if use is not None and use.description is not None
-    )
-    models += tuple(_shown(facts, uses, models))
-    models = _with_own_controllers(models, facts)
     if not models:
         required = sorted(facts.declared - {*facts.defaults, *arguments})
         named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
@@ -122,7 +119,6 @@ def read_launch(
         world = arguments.get("world", facts.defaults.get("world", ""))
     if Path(world).is_absolute() and UNKNOWN not in world:
         world = str(facts.here(Path(world)))
-    lost = [spawn for spawn, use in found if use is None]
     return LaunchStart(
         file=file,
         models=models,
@@ -132,9 +128,57 @@ def read_launch(
         diagnostics=(
             *_unused(file, arguments, facts),
             *_unknown(file, world, [each for each in models if not each.is_shown] or models, facts),
+            *_undecided(file, facts, models, read),
             *_not_spawned(file, lost, facts),
         ),
     )
+
+
+def _models(file: Path, facts: Facts) -> tuple[tuple[LaunchedModel, ...], list[Spawn]]:
+    """The models that a launch file spawns or publishes, and those without a description."""
+    uses = [each for each in uses_of(file, facts) if each.description is not None]
+    found = list(_described(facts, uses))
+    models = tuple(
+        LaunchedModel(description=use.description, use=use, spawn=spawn, is_shown=not facts.spawns)
+        for spawn, use in found
+        if use is not None and use.description is not None
+    )
+    models += tuple(_shown(facts, uses, models))
+    lost = [spawn for spawn, use in found if use is None]
+    return _with_own_controllers(models, facts), lost
+
+
+def _undecided(
+    file: Path,
+    facts: Facts,
+    models: tuple[LaunchedModel, ...],
+    read: Callable[[Collection[Place]], Facts],
+) -> Iterator[Diagnostic]:
+    """The conditional expressions with an unknown condition that decide what is started.
+
+    The launch file is read again with the other value of each, to compare what it starts.
+
+    Args:
+        file: The launch file.
+        facts: Its contents.
+        models: What it starts.
+        read: Reads it with the other values of some expressions.
+    """
+    for place, used in itertools.islice(facts.conditionals.items(), _MOST_TRIED):
+        try:
+            other = read([place])
+            same = (other.world, _models(file, other)[0]) == (facts.world, models)
+        except TooCostlyError:
+            return
+        if not same:
+            yield _lost(
+                place.file,
+                f"which value the conditional expression has is unknown, {_WHY}; that before "
+                f'"if" in line {used} is used',
+                what="expression",
+                line=place.line,
+                used=str(used),
+            )
 
 
 def _unknown(

@@ -6,7 +6,7 @@ import contextlib
 import os
 import re
 import shlex
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -24,7 +24,7 @@ from cartwheel.description.launches.controllers import (
     by_spawner,
 )
 from cartwheel.description.launches.effort import UNKNOWN, Effort
-from cartwheel.description.launches.python_variables import Uncertain
+from cartwheel.description.launches.python_variables import Place, Uncertain
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
     Spawn,
@@ -113,6 +113,10 @@ class Facts:
     uncertain: dict[tuple[Path, int, str], Uncertain] = field(default_factory=dict)
     """Functions and variables in Python that may have different values, by the file, the line of
     the first value and the name."""
+    conditionals: dict[Place, int] = field(default_factory=dict)
+    """The expressions ``a if condition else b`` with an unknown condition, with the lines of a."""
+    reversed: Collection[Place] = ()
+    """Those of which b is used instead of a."""
     defaults: dict[str, str] = field(default_factory=dict)
     """The arguments of the launch file itself that have their default, such as the robot's type."""
 
