@@ -21,7 +21,12 @@ from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.elements.node import Node
-from cartwheel.description.launches import OwnLaunches
+from cartwheel.description.launches import (
+    LaunchSearch,
+    OwnLaunches,
+    needs_expansion,
+    unexpanded,
+)
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
@@ -127,7 +132,10 @@ def _subject(
     robots = tuple(
         Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
     )
-    control, launched = controller_files_of(robots, opened.packages, given, launches)
+    search = launches or LaunchSearch(opened.packages.package_path).of
+    control, launched = controller_files_of(robots, opened.packages, given, search)
+    file = Path(opened.files[0])
+    plain = unexpanded(file, search(file).launches) if needs_expansion(file) else ()
     subject = Subject(
         root=opened.root,
         files=opened.files,
@@ -138,6 +146,7 @@ def _subject(
         gaps=tuple(gaps),
         control=control,
         launched=launched,
+        unexpanded=tuple(plain),
     )
     for robot in robots:
         robot.controlled = controlled_sides(subject, robot)

@@ -41,6 +41,7 @@ def passed(subject: Subject) -> Iterator[Diagnostic]:
         if failure.code not in ABSENT and "moments" not in failure.values:
             yield failure
     yield from (each for _, selected in subject.launched for each in selected.problems)
+    yield from subject.unexpanded
     yield from limited(_relevant(subject), partial(_finished, subject))
 
 

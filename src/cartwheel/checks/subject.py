@@ -46,6 +46,9 @@ class Subject:
     """What launch files load for each robot with a controller manager; empty if the user states the
     controller files."""
 
+    unexpanded: Sequence[Diagnostic] = ()
+    """About a launch file that does not expand the description."""
+
     @property
     def is_urdf(self) -> bool:
         """Whether it is a URDF or a xacro that produces one."""

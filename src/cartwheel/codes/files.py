@@ -127,3 +127,9 @@ LAUNCH_WORLD_ABSENT = Code(
     "warning",
     "the world of a launch file was not found, and the empty world is used",
 )
+DESCRIPTION_NOT_EXPANDED = Code(
+    "CW166",
+    "description-not-expanded",
+    "warning",
+    "a launch file passes the text of a xacro to ROS without expanding it",
+)

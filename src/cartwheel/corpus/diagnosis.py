@@ -19,6 +19,7 @@ _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
 """Lengths in other units, with which shapes are inside each other or kilometres long."""
+_NOT_EXPANDED = frozenset({files.DESCRIPTION_NOT_EXPANDED})
 _JOINTS = frozenset(
     {
         robot.LIMIT_ZERO,
@@ -58,6 +59,8 @@ def faults(
         return
     if (unloaded := _unloaded(verdict, description)) is not None:
         yield Fault(test="load", reason=unloaded)
+    if (plain := coded(verdict.observed, _NOT_EXPANDED)) is not None:
+        yield Fault(test="load", reason=plain)
     # Two plugins of a kind are one fault.
     held = bool([*_held_bases(verdict, description, findings)])
     missing = {

@@ -33,6 +33,7 @@ from cartwheel.description.launches import (
     chosen,
     launches_near,
     own_launches,
+    unexpanded,
 )
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -108,12 +109,12 @@ def try_robot(
         return replace(
             verdict, error=str(error), failure=reason, faults=(Fault(test="load", reason=reason),)
         )
-    verdict = _described(verdict, robot)
+    verdict = replace(_described(verdict, robot), observed=(*unexpanded(file, launches),))
     spawned: tuple[str, ...] = ()
     if controllers is None:
         selected = selection(robot, use, launches, within=own.folder)
         controllers, spawned = selected.files, selected.names
-        verdict = replace(verdict, observed=selected.problems)
+        verdict = replace(verdict, observed=(*verdict.observed, *selected.problems))
     try:
         with World(surroundings(robot), lenient=True) as world:
             robot_model = put(world, robot, controllers)

@@ -20,6 +20,7 @@ from cartwheel.description.launches.start import (
     is_launch_file,
     read_launch,
 )
+from cartwheel.description.launches.unexpanded import needs_expansion, unexpanded
 
 __all__ = [
     "LaunchSearch",
@@ -31,9 +32,11 @@ __all__ = [
     "controllers_for",
     "is_launch_file",
     "launches_near",
+    "needs_expansion",
     "own_launches",
     "read_launch",
     "root_of",
     "shared_parts",
     "starters",
+    "unexpanded",
 ]

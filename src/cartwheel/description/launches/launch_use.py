@@ -6,6 +6,8 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from cartwheel.errors import Origin
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LaunchUse:
@@ -17,6 +19,8 @@ class LaunchUse:
     """The description; None if the launch file only starts controllers."""
     arguments: Mapping[str, str]
     """Arguments of the xacro whose values are known."""
+    plain: Origin | None = None
+    """Where it passes the text of the description without expanding it; None if it does not."""
     unknown: int = 0
     """Number of arguments whose values are unknown."""
     controllers: tuple[Path, ...] = ()

@@ -56,6 +56,7 @@ from cartwheel.description.launches.python_variables import Place, Uncertain, Va
 from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import Facts
 from cartwheel.description.launches.variants import SUFFIXES
+from cartwheel.errors import Origin
 
 _STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
 """Actions that start nodes or read files."""
@@ -113,6 +114,8 @@ class _Reader:
         self._facts = facts
         self._depth = depth
         self._turns = _MOST_TURNS
+        self._line = 0
+        """The line of the action that is made."""
         self._names = Variables({"__file__": str(path)})
         self._functions: dict[str, ast.FunctionDef] = {}
         """The functions of the file that the file itself calls."""
@@ -454,7 +457,8 @@ class _Reader:
             return loaded(text(first), self._facts.effort)
         if name in OUTPUTS:
             said = first if isinstance(first, list) else [first]
-            return Description(self._facts.describe(" ".join(map(joined, said))))
+            origin = Origin(file=str(self._path), line=node.lineno)
+            return Description(self._facts.describe(" ".join(map(joined, said)), origin))
         if name == "parse":
             return first if is_module(node.func, "xacro") else NOTHING
         maker = _ACTIONS.get(name)
@@ -464,6 +468,7 @@ class _Reader:
             made = functools.partial(maker, self, first, places, words)
             self._started.append(Later(made, self._facts.namespace))
             return self._started[-1]
+        self._line = node.lineno
         return maker(self, first, places, words)
 
     def _skip(self, node: ast.Call) -> None:
@@ -560,7 +565,8 @@ class _Reader:
 
     def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds the description in a command."""
-        return Description(self._facts.describe(joined(words.get("command", first))))
+        origin = Origin(file=str(self._path), line=self._line)
+        return Description(self._facts.describe(joined(words.get("command", first)), origin))
 
     def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a Python expression, which consists of substitutions."""

@@ -122,13 +122,14 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
         described.append((None, {}))
     found = []
     spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))
-    for description, arguments in described:
+    for number, (description, arguments) in enumerate(described):
         known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
         found.append(
             LaunchUse(
                 file=path,
                 description=description,
                 arguments=known,
+                plain=facts.plain.get(number),
                 unknown=len(arguments) - len(known),
                 controllers=tuple(dict.fromkeys(path for _, path in facts.yamls)),
                 spawned=spawned,

@@ -21,6 +21,7 @@ from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.python_variables import Place
 from cartwheel.description.launches.search import facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
+from cartwheel.description.launches.unexpanded import not_expanded
 from cartwheel.description.launches.use import ABSENT, Facts
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.options import PACKAGE_PATH, WORLD
@@ -129,6 +130,7 @@ def read_launch(
             *_unused(file, arguments, facts),
             *_unknown(file, world, [each for each in models if not each.is_shown] or models, facts),
             *_undecided(file, facts, models, read),
+            *itertools.chain(*(not_expanded(each.use) for each in models)),
             *_not_spawned(file, lost, facts),
         ),
     )

@@ -34,7 +34,7 @@ from cartwheel.description.launches.spawning import (
     world_in,
 )
 from cartwheel.description.launches.variants import SUFFIXES, beside
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Origin
 
 ABSENT = -1
 """The number of a description that was not found."""
@@ -75,6 +75,8 @@ class Facts:
     file: Path = Path()
     """The launch file that is read."""
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
+    plain: dict[int, Origin] = field(default_factory=dict)
+    """Where those are stated whose text is not expanded, by their numbers."""
     absent: dict[str, None] = field(default_factory=dict)
     """Files and packages that are stated, but were not found, in their order."""
     published: dict[str, int] = field(default_factory=dict)
@@ -136,8 +138,12 @@ class Facts:
         folder = folder or self.home
         return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
 
-    def describe(self, text: str) -> int | None:
+    def describe(self, text: str, origin: Origin) -> int | None:
         """Adds the description in a file name, or in a command such as ``xacro FILE a:=b``.
+
+        Args:
+            text: The file or the command.
+            origin: Where the launch file states it.
 
         Returns:
             As for `add`.
@@ -167,7 +173,11 @@ class Facts:
                     arguments[name] = UNKNOWN if ":=" in value else value
             elif file is None and word.endswith(SUFFIXES):
                 file = Path(word)
-        return self.add(file, arguments)
+        first = len(self.descriptions)
+        number = self.add(file, arguments)
+        if words and (Path(words[0]) == file or words[0].rpartition("/")[2] == "cat"):
+            self.plain |= dict.fromkeys(range(first, len(self.descriptions)), origin)
+        return number
 
     def add(self, file: Path | None, arguments: Mapping[str, str]) -> int | None:
         """Adds a description with arguments, if the file exists.

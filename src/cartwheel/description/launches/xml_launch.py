@@ -144,7 +144,9 @@ class _Reader:
         for name in ("command", "textfile", "value"):
             value = node.attributes.get(name, "")
             if value and (name != "value" or "command" in value):
-                facts.store_parameter(parameter, facts.describe(self._value(node, name)))
+                facts.store_parameter(
+                    parameter, facts.describe(self._value(node, name), node.origin)
+                )
 
     def _holds(self, node: Node) -> bool:
         """Whether the conditions of an element hold. An unknown condition holds."""

@@ -1,0 +1,61 @@
+"""Launch files that pass the text of a xacro to ROS without expanding it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from cartwheel.codes.files import DESCRIPTION_NOT_EXPANDED
+from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.launch_use import LaunchUse
+from cartwheel.errors import Diagnostic
+
+_XACRO = re.compile(r"<xacro:|\$\{")
+
+
+def needs_expansion(description: Path) -> bool:
+    """Whether a file contains xacro elements or expressions, outside of comments."""
+    try:
+        first, *rest = read_regular_text(description).split("<!--")
+    except OSError:
+        return False
+    return any(
+        _XACRO.search(each) for each in (first, *(each.partition("-->")[2] for each in rest))
+    )
+
+
+def unexpanded(description: Path, launches: Sequence[LaunchUse]) -> Iterator[Diagnostic]:
+    """The launch file that starts a robot in Gazebo without expanding its description.
+
+    It is reported only if no launch file that starts the robot in Gazebo expands the description.
+
+    Args:
+        description: The description.
+        launches: Launch files of its author.
+    """
+    path = description.resolve()
+    own = [
+        each
+        for each in launches
+        if each.simulated and each.description is not None and each.description.resolve() == path
+    ]
+    if all(each.plain is not None for each in own):
+        for use in own[:1]:
+            yield from not_expanded(use)
+
+
+def not_expanded(use: LaunchUse) -> Iterator[Diagnostic]:
+    """The diagnostic for a launch file that passes a xacro as it is."""
+    if use.plain is not None and use.description is not None and needs_expansion(use.description):
+        name = use.description.name
+        command = f"command=\"xacro '$(find PACKAGE)/…/{name}'\""
+        if use.plain.file.endswith(".py"):
+            command = 'Command(["xacro ", file])'
+        yield DESCRIPTION_NOT_EXPANDED.diagnostic(
+            f'robot_description is the text of "{name}", which xacro does not expand, so Gazebo '
+            "finds no links of its macros and included files, and no values of its expressions",
+            origin=use.plain,
+            values={"description": str(use.description)},
+            hint=f"Run xacro, for example with {command}.",
+        )

@@ -1,0 +1,122 @@
+"""Launch files that pass the text of a xacro without expanding it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from tests.coded import coded
+
+from cartwheel.checks import check
+from cartwheel.codes.files import DESCRIPTION_NOT_EXPANDED
+from cartwheel.corpus import robots_in, try_robot
+from cartwheel.description.launches import launches_near, read_launch, unexpanded
+
+FILE = "$(find bot)/urdf/bot.urdf.xacro"
+PARAM = '<param name="robot_description" {}/>'
+SPAWN = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-urdf -param robot_description"/>'
+TEXT, CAT, XACRO = (
+    PARAM.format(each)
+    for each in (f'textfile="{FILE}"', f"command=\"cat '{FILE}'\"", f'command="xacro {FILE}"')
+)
+PYTHON = """
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory("bot"), "urdf", "bot.urdf.xacro")
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{{"robot_description":
+                 Command(["{program} ", file])}}]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+    ])
+"""
+INERTIAL = (
+    '<inertial><mass value="${mass}"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+    '<collision><geometry><box size="0.3 0.3 0.1"/></geometry></collision>'
+)
+HEAD = '<robot name="bot" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+SENSOR = '<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>'
+MASS = '<xacro:property name="mass" value="1"/>'
+BODY = f'<link name="base">{INERTIAL}</link>{SENSOR}'
+Write = Callable[..., Path]
+
+
+@pytest.fixture
+def bot(tmp_path: Path) -> Write:
+    """Writes a robot and launch files, and returns the robot's file."""
+    folder = tmp_path / "bot"
+    for name in ("launch", "urdf"):
+        (folder / name).mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>bot</name></package>")
+
+    def write(body: str, *files: str) -> Path:
+        path = folder / "urdf/bot.urdf.xacro"
+        path.write_text(f"{HEAD}{body}</robot>")
+        for index, text in enumerate(files):
+            python = "def " in text
+            name = f"{index}.launch" + ".py" * python
+            (folder / "launch" / name).write_text(
+                text if python else f"<launch>\n{text}\n</launch>"
+            )
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "line"),
+    [
+        (TEXT + SPAWN, "0.launch", 2),
+        (CAT + SPAWN, "0.launch", 2),
+        (f"{SPAWN}\n{CAT}", "0.launch", 3),
+        (PYTHON.format(program="cat"), "0.launch.py", 7),
+    ],
+)
+def test_a_xacro_whose_text_is_passed_is_reported_with_the_line_of_the_launch_file(
+    bot: Write, text: str, name: str, line: int
+) -> None:
+    # One that only shows the robot does not help.
+    path = bot(MASS + BODY, text, XACRO)
+    launch = path.parents[1] / "launch" / name
+    (found,) = unexpanded(path, launches_near(path.parents[1]))
+    assert found.origin is not None
+    assert (found.origin.file, found.origin.line) == (str(launch), line)
+    assert [each.origin for each in check(path).findings if each.code is found.code] == [
+        found.origin
+    ]
+    (said,) = coded(read_launch(launch, {}), DESCRIPTION_NOT_EXPANDED)
+    assert said == found
+    assert [*robots_in(path.parents[1])] == [path]
+    verdict = try_robot(path, standing=1.0)
+    assert verdict.stands
+    assert [(each.test, each.reason) for each in verdict.faults] == [("load", found)]
+    assert verdict.outcome == "file"
+
+
+@pytest.mark.parametrize(
+    ("body", "files"),
+    [
+        (MASS + BODY, (XACRO + SPAWN,)),
+        (MASS + BODY, (PYTHON.format(program="xacro"),)),
+        # Another launch file that starts Gazebo expands it, or Gazebo is not started.
+        (MASS + BODY, (CAT + SPAWN, XACRO + SPAWN)),
+        (MASS + BODY, (CAT,)),
+        # It needs no expansion.
+        (BODY.replace("${mass}", "1"), (CAT + SPAWN,)),
+        (f"<!-- {MASS} ${{x}} -->" + BODY.replace("${mass}", "1"), (TEXT + SPAWN,)),
+    ],
+)
+def test_other_launch_files_are_not_reported(bot: Write, body: str, files: tuple[str, ...]) -> None:
+    path = bot(body, *files)
+    assert not [*unexpanded(path, launches_near(path.parents[1]))]
+    assert DESCRIPTION_NOT_EXPANDED not in {each.code for each in check(path).findings}
+    assert try_robot(path, standing=1.0).good
+
+
+def test_the_launch_file_that_is_started_is_reported_although_another_one_expands(
+    bot: Write,
+) -> None:
+    path = bot(MASS + BODY, CAT + SPAWN, XACRO + SPAWN)
+    folder = path.parents[1] / "launch"
+    starts = [read_launch(folder / f"{index}.launch", {}) for index in (0, 1)]
+    assert [len(coded(each, DESCRIPTION_NOT_EXPANDED)) for each in starts] == [1, 0]
