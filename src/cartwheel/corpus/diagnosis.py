@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from cartwheel.checks.robot import Robot
-from cartwheel.codes import devices, robot, running, world
+from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, drives_on, flywheel, is_free
 from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
