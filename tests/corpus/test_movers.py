@@ -41,6 +41,11 @@ def test_a_plugin_named_after_following_moves_a_model_whose_wheels_do_not_turn(t
         ("libSimMotion.so", True),
         ("libmy_servo.so", True),
         ("libactuator_plugin.so", True),
+        ("libBoatDynamics.so", True),
+        ("libown_buoyancy.so", True),
+        ("libhydro_forces.so", True),
+        ("libpropulsion.so", True),
+        ("libhydrophone.so", False),
         ("libmotion_sensor.so", False),
         ("libmotion_capture.so", False),
         ("libremove_model.so", False),
@@ -138,3 +143,43 @@ def test_a_plugin_of_an_ignored_element_of_a_model_is_a_fault_of_the_file(
     assert [each.code for each in verdict.faults] == [TAG_IGNORED] * moves
     assert verdict.outcome == ("file" if moves else "good")
     assert verdict.should_move == moves
+
+
+NAMING = (
+    '<gazebo><plugin name="x" filename="libmotor_stream.so">'
+    "<motorJoint>left_joint</motorJoint></plugin></gazebo>"
+)
+ARM = (
+    '<link name="arm"><inertial><mass value="0.1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '</link><joint name="shoulder" type="continuous"><parent link="base"/><child link="arm"/>'
+    '<axis xyz="0 0 1"/></joint>'
+)
+
+
+@pytest.mark.parametrize(
+    ("parts", "outcome"),
+    [
+        ((plugin(),), "good"),
+        ((plugin(), ARM), "unknown"),
+        (
+            (
+                plugin(),
+                ARM.replace(
+                    "<axis", '<limit lower="0" upper="0" effort="1" velocity="1"/><axis'
+                ).replace("continuous", "revolute"),
+            ),
+            "good",
+        ),
+        ((plugin(), OTHER.format("libBoatDynamics.so")), "unknown"),
+        ((plugin(separation=0.1),), "unknown"),
+        ((), "unknown"),
+    ],
+    ids=["all", "arm", "locked", "own", "failed", "alone"],
+)
+def test_an_unsupported_plugin_is_only_a_note_if_everything_is_moved_as_commanded(
+    tmp_path, parts, outcome
+):
+    path = written(tmp_path, cart(), NAMING, *parts)
+    verdict = try_robot(path, standing=1.0)
+    assert verdict.missing[0] == "motor_stream"
+    assert verdict.outcome == outcome

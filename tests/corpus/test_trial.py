@@ -54,10 +54,10 @@ from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import try_robot
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.drive_causes import cause_of_drive
+from cartwheel.corpus.listening import listened
 from cartwheel.corpus.motion import positions
 from cartwheel.corpus.placing import HIGH, place
 from cartwheel.corpus.resting import gave_way
-from cartwheel.corpus.trial import _listened
 from cartwheel.corpus.verdict import Drive, Reach, Stand, Verdict
 from cartwheel.description import load_robot, load_text
 from cartwheel.description.launches import launches_near
@@ -880,10 +880,10 @@ def test_a_joint_that_is_too_weak_does_not_arrive(tmp_path, tried):
 
 def test_a_plugin_that_is_missing_and_moves_a_joint_is_a_fault(tried):
     extra = (
-        '<gazebo><plugin name="x" filename="libmy_own_thing.so"><side>left_joint</side></plugin>'
+        '<gazebo><plugin name="x" filename="libmy_own_thing.so"><side>flap_joint</side></plugin>'
         "</gazebo>"
     )
-    verdict = tried(cart(0.1), extra)
+    verdict = tried(cart(0.1), FLAP.format(z=0.2), extra)
     (fault,) = verdict.faults
     assert (fault.test, fault.subject, fault.code) == ("plugin", "my_own_thing", PLUGIN_UNKNOWN)
     assert fault.source == "unknown"
@@ -1157,7 +1157,7 @@ def test_a_description_that_is_wrong_says_why(tried):
 def test_a_topic_that_states_a_rate_and_is_silent_is_named():
     with World() as world:
         world.graph.advertise("/never", "std_msgs/msg/Float64", rate=10.0)
-        assert _listened(world) == (2, ("/never",))
+        assert listened(world) == (2, ("/never",))
 
 
 def test_a_model_named_as_the_ground_is_tried_beside_it(tmp_path):
@@ -1277,10 +1277,10 @@ def test_a_controller_of_the_file_in_the_tag_must_start_if_a_launch_file_starts_
 )
 def test_an_unsupported_plugin_that_measures_a_joint_moves_nothing(tried, name, moves):
     plugin = (
-        f'<gazebo><plugin name="x" filename="{name}"><jointName>left_joint</jointName>'
+        f'<gazebo><plugin name="x" filename="{name}"><jointName>flap_joint</jointName>'
         "<motorConstant>1</motorConstant></plugin></gazebo>"
     )
-    assert tried(cart(0.1), plugin).moves is not moves
+    assert tried(cart(0.1), FLAP.format(z=0.2), plugin).moves is not moves
 
 
 def test_an_effort_is_tested_on_each_joint_alone(tmp_path, tried):
@@ -1727,3 +1727,19 @@ def test_a_description_for_rviz_that_needs_its_arguments_need_not_stand(tmp_path
     verdict = try_robot(path, standing=1.0, launches=launches_near(tmp_path))
     assert verdict.loaded and not verdict.stands
     assert verdict.good, verdict.faults
+
+
+def test_a_long_robot_that_tilts_a_little_until_it_rests_on_another_part_does_not_rise(tried):
+    """A beam of 4 m, whose middle is 0.1 m too low: 0.05 rad lift its root at one end."""
+    base = BOX.format(name="base", at="1 0 0", size="0.2 0.4 0.3")
+    beam = "".join(
+        f"{BOX.format(name=name, at='0 0 0', size='0.2 0.4 0.1')}"
+        f'<joint name="{name}_joint" type="fixed"><parent link="base"/><child link="{name}"/>'
+        f'<origin xyz="{x} 0 {z}"/></joint>'
+        for name, x, z in (("middle", 2, -0.1), ("end", 4, 0))
+    )
+    verdict = tried(base, beam)
+    assert verdict.stand.sunk < -0.02 * verdict.stand.size
+    assert verdict.stand.tilt > 0.01
+    assert abs(verdict.stand.settled) < 0.005
+    assert verdict.stand.state == "yes"

@@ -7,7 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.codes import devices, files, running
 from cartwheel.corpus.faults import Fault, coded, most_severe
-from cartwheel.corpus.movers import ignored_movers, is_known, managers, moving_plugins
+from cartwheel.corpus.movers import (
+    ignored_movers,
+    is_known,
+    is_own_mover,
+    managers,
+    moving_plugins,
+)
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -55,6 +61,7 @@ def missing_movers(
     `held` is whether something that drives a base was not tested, because the base is fixed.
     """
     said = verdict.diagnostics
+    all_moves = verdict.passes and _is_all_driven(verdict, description)
     for tag in moving_plugins(description):
         if is_known(tag):
             reason = most_severe(
@@ -64,6 +71,9 @@ def missing_movers(
                 and each.values.get("plugin") == tag.filename
             )
             reason = reason or other_tags(description, tag)
+        elif all_moves and not is_own_mover(tag):
+            # The report lists it among the missing plugins.
+            continue
         else:
             reason = devices.PLUGIN_UNKNOWN.diagnostic(
                 f'plugin "{tag.filename}" is not supported, so it has no effect',
@@ -131,6 +141,25 @@ def missing_movers(
             reason = other_ros(description, tag) or _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:
+    """Whether supported plugins and controllers drive all joints, and the base if it can move.
+
+    Joints whose limits leave no room do not count, such as those by which sensors are attached.
+    """
+    movable = {
+        each.name
+        for each in description.joints
+        if each.type != "fixed"
+        and not (
+            each.axis.lower is not None
+            and each.axis.upper is not None
+            and each.axis.upper <= each.axis.lower
+        )
+    }
+    held = verdict.stand is not None and verdict.stand.fixed
+    return movable <= verdict.driven and (held or bool(verdict.drives or verdict.flights))
 
 
 def _is_misplaced(each: Diagnostic) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from cartwheel.api import Model, World
 from cartwheel.checks.gains import span
+from cartwheel.checks.resting import starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.flying.thrusters import has_thrusters, is_in_space
@@ -60,7 +61,29 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
         turn=_turned(before, after),
         size=Robot(description, None).size,
         floats=has_thrusters(description) or is_in_space(description),
+        settled=_settled(description, start, after),
     )
+
+
+def _settled(description: RobotDescription, start: Pose, after: Pose) -> float | None:
+    """Decrease in height of a robot's lowest collision if all links move with the root, m.
+
+    `start` and `after` are poses of the root. None for a robot without collisions.
+    """
+    robot = Robot(description, None)
+    root = description.canonical_pose.inverse()
+    shapes = [
+        (solid, root @ pose)
+        for name, pose in starting_poses(robot).items()
+        for solid in robot.collisions[name]
+    ]
+    if not shapes:
+        return None
+    before, now = (
+        min(float(solid.placed(place @ pose)[:, 2].min()) for solid, pose in shapes)
+        for place in (start, after)
+    )
+    return before - now
 
 
 def reaches(

@@ -24,6 +24,7 @@ _REPORTS = re.compile(r"status|state|monitor|publisher|sensor|encoder|odom|wind"
 """Names of unsupported plugins without commands, although their tags contain joints or forces."""
 _TRAVELS = re.compile(
     r"follow|vehicle|navigat|patrol|waypoint|locomot|walk|driver|servo|actuat"
+    r"|dynamics|buoyan|hydro(?!phone)|thruster|propuls"
     r"|(?<!re)mov(?:e(?!it)|ing)|(?<!e)motion(?!_?(?:capture|detect))",
     re.IGNORECASE,
 )
@@ -123,6 +124,13 @@ def managers(robot: RobotDescription, *, jointless: bool = False) -> list[Plugin
 def is_known(tag: PluginTag) -> bool:
     """Whether Cartwheel supports a plugin."""
     return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
+
+
+def is_own_mover(tag: PluginTag) -> bool:
+    """Whether an unsupported plugin moves a model in its own way, such as by forces of water, also
+    if other plugins drive all joints.
+    """
+    return bool(_TRAVELS.search(short_name(tag.filename)))
 
 
 def _may_move(filename: str) -> bool:

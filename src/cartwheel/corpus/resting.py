@@ -118,14 +118,14 @@ def gave_way(
         moving: Whether the robot did not stand still. If it has no motors, its wheels may roll.
     """
     waiting = {name: each.name for each in started if not each.holds for name in each.interfaces}
-    driven = _driven(world, model) - waiting.keys()
-    rolls = moving and not driven and not waiting
+    moved = driven(world, model) - waiting.keys()
+    rolls = moving and not moved and not waiting
     found = {
         joint.name: abs(model.joint(joint.name) - _within(joint, before[joint.name]))
         for joint in robot.description.joints
         if joint.name in before
         and (joint.type in ("revolute", "prismatic") or (rolls and joint.turns))
-        and joint.name not in driven
+        and joint.name not in moved
         and joint.mimic is None
         and joint.axis.spring_stiffness == 0
     }
@@ -178,7 +178,7 @@ def _within(joint: Joint, position: float) -> float:
     return position if upper is None else min(position, upper)
 
 
-def _driven(world: World, model: Model) -> set[str]:
+def driven(world: World, model: Model) -> set[str]:
     """The joints that plugins drive."""
     return {
         name

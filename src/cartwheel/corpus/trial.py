@@ -18,10 +18,11 @@ from cartwheel.corpus.flying.flights import flights
 from cartwheel.corpus.flying.thrusters import bursts, thrusts
 from cartwheel.corpus.gains import too_weak, undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
+from cartwheel.corpus.listening import LISTENING, controllers_of, idle, listened
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.placing import HIGH, name_in, put, surroundings
 from cartwheel.corpus.poses import posed
-from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
+from cartwheel.corpus.resting import blocked, dragging, driven, drives_apart, gave_way
 from cartwheel.corpus.rivals import hindered
 from cartwheel.corpus.verdict import Drive, Verdict
 from cartwheel.corpus.worlds import load_from_world
@@ -38,17 +39,12 @@ from cartwheel.description.launches import (
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.ros_control.selection import selection, with_published_control
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
-from cartwheel.graph import Subscription
 
 STANDING = 10.0
 """Simulation time without commands, s."""
-_LISTENING = 1.0
-"""Time in which a topic with a stated rate of some Hz must publish, s."""
-_LONGEST = 5.0
 
 
 def try_robot(
@@ -121,7 +117,7 @@ def try_robot(
             verdict = replace(
                 verdict,
                 loaded=True,
-                controllers=tuple(each.name for each in _controllers(world).started),
+                controllers=tuple(each.name for each in controllers_of(world).started),
                 controller_files=tuple(controllers),
                 spawned=spawned,
             )
@@ -169,7 +165,7 @@ def _again(verdict: Verdict, controllers: Sequence[Path], robot: RobotDescriptio
     start = replace(verdict, drives=(), reaches=(), spins=(), flights=())
     with World(surroundings(robot), lenient=True) as world:
         model = put(world, robot, controllers)
-        *_, moved = _moved(start, world, model, robot, _LISTENING, held=set())
+        *_, moved = _moved(start, world, model, robot, LISTENING, held=set())
     return moved
 
 
@@ -248,15 +244,20 @@ def _moved(
     before = motion.positions(world, model)
     body = Robot(robot, None)
     stood = motion.stand(world, model, robot, standing)
-    started = _controllers(world).started
+    started = controllers_of(world).started
     body.controlled = controlled_sides(body, started)
     given_up: list[Diagnostic] = []
     if not stood.fixed:
         moving = stood.state == "moves"
         given_up += gave_way(world, model, body, before, started, moving=moving)
-    verdict = replace(verdict, stand=stood, observed=(*verdict.observed, *given_up))
+    verdict = replace(
+        verdict,
+        stand=stood,
+        driven=frozenset(driven(world, model)),
+        observed=(*verdict.observed, *given_up),
+    )
     yield verdict
-    topics, silent = _listened(world)
+    topics, silent = listened(world)
     verdict = replace(verdict, topics=topics, silent=silent)
     yield verdict
     if not stood.fixed:
@@ -287,7 +288,7 @@ def _driven(
         body,
         within_speeds(stated_limits(robot, started), body, started),
         started,
-        idle=_idle(world),
+        idle=idle(world),
         steered=_steered(robot, started),
         look=lambda: resting.extend(dragging(world, model, body, started)),
     ):
@@ -297,7 +298,7 @@ def _driven(
     verdict = replace(verdict, drives=tuple(drives))
     if all(drive.passes for drive in drives):
         return verdict
-    world.run(_LISTENING)
+    world.run(LISTENING)
     # An arm in unstable balance falls only while the robot drives.
     seen = [*dragging(world, model, body, started), *seen]
     found = {(each.values["link"], each.values["joint"]): each for each in reversed(seen)}
@@ -308,7 +309,7 @@ def _driven(
 def _joints_moved(
     verdict: Verdict, world: World, model: Model, robot: RobotDescription, held: set[str]
 ) -> Iterator[Verdict]:
-    started = _controllers(world).started
+    started = controllers_of(world).started
     gains = weak_gains(robot, started)
     reached = [*motion.reaches(world, model, robot, started, gains), *posed(world, model, robot)]
     verdict = replace(verdict, reaches=tuple(reached))
@@ -347,7 +348,7 @@ def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]
     with World("empty", lenient=True) as world:
         model = world.spawn(hung, name=name_in(world, robot), z=HIGH, controllers=controllers)
         # The controllers start with the simulation.
-        world.run(_LISTENING)
+        world.run(LISTENING)
         *_, moved = _joints_moved(verdict, world, model, robot, set())
     return moved
 
@@ -356,36 +357,3 @@ def _steered(robot: RobotDescription, started: Sequence[Controller]) -> bool:
     """Whether one of the drives cannot turn in place."""
     names = [short_name(tag.filename) for tag in robot.plugins]
     return any(STEERED.search(name) for name in (*names, *(each.type for each in started)))
-
-
-def _controllers(world: World) -> ControllerFiles:
-    return world.session.shared.get(ControllerFiles)
-
-
-def _idle(world: World) -> set[str]:
-    """Nodes of controllers that do not run: two controllers of one joint are used alternately."""
-    return {each.node for each in _controllers(world).loaded if not each.running}
-
-
-def _listened(world: World) -> tuple[int, tuple[str, ...]]:
-    """The number of topics with a stated rate, and those without messages."""
-    graph = world.graph
-    idle = _idle(world)
-    rated = {each.topic: each for each in graph.publishers() if each.rate and each.node not in idle}
-    subscriptions: dict[str, Subscription] = {}
-    silent = set(rated)
-
-    def hear(topic: str, _message: object) -> None:
-        silent.discard(topic)
-        # One message is enough, and to render more images takes most of a trial's time.
-        if topic in subscriptions:
-            subscriptions.pop(topic).close()
-
-    for topic in rated:
-        subscriptions[topic] = graph.subscribe(topic, partial(hear, topic))
-    slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)
-    if rated:
-        world.run(min(_LONGEST, max(_LISTENING, 3.0 / slowest)))
-    for subscription in subscriptions.values():
-        subscription.close()
-    return len(rated), tuple(sorted(silent))

@@ -52,6 +52,10 @@ class Stand:
     """Longest edge of the robot's bounding box, m."""
     floats: bool = False
     """Whether it was tested in water, where it need not stand."""
+    settled: float | None = None
+    """Decrease in height of the lowest collision, m, if all links had moved with the root; None for
+    `sunk`. A long robot that tilts a little until it rests on another part lowers its root, but not
+    this, unlike one whose legs give way."""
 
     @property
     def state(self) -> str:
@@ -64,8 +68,9 @@ class Stand:
             return "moves"
         if self.tilt > TILTED:
             return "tips"
-        if abs(self.sunk) > SUNK * max(1.0, self.size):
-            return "sinks" if self.sunk > 0 else "rises"
+        lowered = self.sunk if self.settled is None else self.settled
+        if abs(lowered) > SUNK * max(1.0, self.size):
+            return "sinks" if lowered > 0 else "rises"
         return "yes"
 
 
@@ -270,6 +275,8 @@ class Verdict:
     launch: LaunchUse | None = None
     """The launch file whose arguments were used."""
     diagnostics: tuple[Diagnostic, ...] = ()
+    driven: frozenset[str] = frozenset()
+    """Joints that plugins and controllers drive."""
     hindered: frozenset[tuple[Test, str]] = frozenset()
     """The failed tests, each with topic or joint, whose error changes if only one of two plugins
     drives the joints."""
@@ -292,6 +299,18 @@ class Verdict:
         return bool(self.drives or self.reaches or self.spins or self.flights) and not any(
             fault.test in MOTION for fault in self.faults
         )
+
+    @property
+    def passes(self) -> bool:
+        """Whether commands moved it, and all measurements were as expected."""
+        moved = (
+            *(drive.passes for drive in self.drives),
+            *(reach.arrived for reach in self.reaches),
+            *(spin.follows for spin in self.spins),
+            *(flight.flies for flight in self.flights),
+        )
+        whole = self.failure is None and self.stands and not self.silent
+        return whole and bool(moved) and all(moved)
 
     @property
     def stands(self) -> bool:

@@ -1,0 +1,49 @@
+"""The controllers of a robot on trial, and which of its topics publish."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from cartwheel.api import World
+from cartwheel.dialects.ros_control.files import ControllerFiles
+from cartwheel.graph import Subscription
+
+LISTENING = 1.0
+"""Time in which a topic with a stated rate of some Hz must publish, s."""
+_LONGEST = 5.0
+
+
+def controllers_of(world: World) -> ControllerFiles:
+    """The controllers of the models in a world, with their files."""
+    return world.session.shared.get(ControllerFiles)
+
+
+def idle(world: World) -> set[str]:
+    """Nodes of controllers that do not run: two controllers of one joint are used alternately."""
+    return {each.node for each in controllers_of(world).loaded if not each.running}
+
+
+def listened(world: World) -> tuple[int, tuple[str, ...]]:
+    """The number of topics with a stated rate, and those without messages."""
+    graph = world.graph
+    waiting = idle(world)
+    rated = {
+        each.topic: each for each in graph.publishers() if each.rate and each.node not in waiting
+    }
+    subscriptions: dict[str, Subscription] = {}
+    silent = set(rated)
+
+    def hear(topic: str, _message: object) -> None:
+        silent.discard(topic)
+        # One message is enough, and to render more images takes most of a trial's time.
+        if topic in subscriptions:
+            subscriptions.pop(topic).close()
+
+    for topic in rated:
+        subscriptions[topic] = graph.subscribe(topic, partial(hear, topic))
+    slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)
+    if rated:
+        world.run(min(_LONGEST, max(LISTENING, 3.0 / slowest)))
+    for subscription in subscriptions.values():
+        subscription.close()
+    return len(rated), tuple(sorted(silent))
