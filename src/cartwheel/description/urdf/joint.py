@@ -13,7 +13,7 @@ from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimit
 from cartwheel.description.sdf.joint import usable_limits
 from cartwheel.description.urdf.context import UrdfContext, read_origin
 from cartwheel.errors import Value
-from cartwheel.geometry import Pose, Vec3
+from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
 from cartwheel.similar_names import meant, suggestion
 
 TYPES: dict[str, JointType] = {
@@ -31,7 +31,8 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
     """A joint, and its frame in its parent link, which is the child's frame at zero.
 
     Raises:
-        DescriptionError: A link does not exist, the axis has length zero, or the type is unknown.
+        DescriptionError: A link does not exist, the axis has length zero in a robot that is not for
+            Gazebo Classic, or the type is unknown.
     """
     name = node.require("name").strip()
     written = node.require("type").strip()
@@ -87,6 +88,33 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
     return joint, read_origin(node)
 
 
+def directed(
+    joints: Sequence[Joint], poses: Mapping[str, Pose], undirected: Collection[str]
+) -> list[Joint]:
+    """Joints in which an axis of length 0 is the x axis of the model, as in Gazebo Classic.
+
+    urdfdom and sdformat 9 pass such an axis on, and ODE's ``dJointSetHingeAxis`` normalises it in
+    the frame of the world to 1 0 0. sdformat 10 and later, which gz-sim uses, refuse it.
+
+    Args:
+        joints: The joints.
+        poses: Poses of the links in the model frame, by name.
+        undirected: Names of the joints whose axis has length 0.
+    """
+    return [
+        replace(
+            each,
+            axis=replace(
+                each.axis,
+                xyz=rotate(quat_conjugate(poses[each.child].orientation), (1.0, 0.0, 0.0)),
+            ),
+        )
+        if each.name in undirected
+        else each
+        for each in joints
+    ]
+
+
 def _end(node: Node, joint: str, which: str, links: Collection[str]) -> str:
     end = node.child(which)
     if end is None:
@@ -116,11 +144,19 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
     length = math.sqrt(sum(value * value for value in xyz))
     if length < 1e-6:
         assert stated is not None
-        raise stated.fail(
-            f'joint "{name}": the axis {stated.attributes.get("xyz")} has length 0',
-            code=robot.AXIS_ZERO,
+        said = f'joint "{name}": the axis {stated.attributes.get("xyz")} has length 0'
+        if not ctx.classic:
+            raise stated.fail(said, code=robot.AXIS_ZERO, values={"joint": name})
+        ctx.warn(
+            robot.AXIS_ZERO,
+            f"{said}, for which Gazebo Classic uses the x axis of the world; gz-sim does not load "
+            "such a robot",
+            origin=stated.origin,
+            severity="warning",
             values={"joint": name},
         )
+        ctx.undirected.add(name)
+        xyz, length = (1.0, 0.0, 0.0), 1.0
     unit: Vec3 = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
     lower = upper = effort = velocity = None
     if limits is not None:

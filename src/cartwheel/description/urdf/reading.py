@@ -6,7 +6,8 @@ the tree of joints. This module combines them; each has its own module.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from cartwheel.codes import files, robot
@@ -23,13 +24,17 @@ from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.urdf.harmless import HARMLESS
 from cartwheel.description.urdf.inertia import judged_inertia
-from cartwheel.description.urdf.joint import read_joint, without_invalid_mimics
+from cartwheel.description.urdf.joint import directed, read_joint, without_invalid_mimics
 from cartwheel.description.urdf.link import ReadLink, read_link
 from cartwheel.description.urdf.material import read_materials
 from cartwheel.description.urdf.merged_gravity import merge_gravity
 from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
+
+_CLASSIC = re.compile(r"^(?:lib)?gazebo_")
+_GZ = re.compile(r"^(?:lib)?(?:gz|ign|ignition)[-_]")
+"""Beginnings of the names of plugins for Gazebo Classic and for gz-sim."""
 
 
 def read_urdf(
@@ -71,6 +76,7 @@ def read_urdf(
     joint_nodes = root.all("joint")
     _check_unique("joint", joint_nodes)
 
+    ctx.classic = _is_classic(root)
     parts = [read_link(node, ctx) for node in link_nodes]
     names = [part.link.name for part in parts]
     known = frozenset(names)
@@ -78,6 +84,7 @@ def read_urdf(
     joints = without_invalid_mimics([joint for joint, _ in read], ctx)
     tree = build_tree([(part.link.name, part.link.origin) for part in parts], joints)
     poses = tree.poses({joint.name: frame for joint, frame in read})
+    joints = directed(joints, poses, ctx.undirected)
 
     tags = read_gazebo_tags(root, known, {joint.name: joint for joint in joints}, ctx)
     links = [_complete(part, tree, poses[part.link.name], tags, ctx) for part in parts]
@@ -122,6 +129,26 @@ def read_urdf(
         text=text,
         origin=root.origin,
     )
+
+
+def _is_classic(root: Node) -> bool:
+    """Whether a robot has plugins for Gazebo Classic, and none for gz-sim."""
+    files = [
+        plugin.attributes.get("filename", "")
+        for tag in root.children
+        if tag.tag == "gazebo"
+        for plugin in _plugins(tag)
+    ]
+    return any(map(_CLASSIC.search, files)) and not any(map(_GZ.search, files))
+
+
+def _plugins(tag: Node) -> Iterator[Node]:
+    """The plugins in a ``<gazebo>``, and those of the sensors in it."""
+    for each in tag.children:
+        if each.tag == "plugin":
+            yield each
+        elif each.tag == "sensor":
+            yield from (part for part in each.children if part.tag == "plugin")
 
 
 def _name(root: Node) -> str:

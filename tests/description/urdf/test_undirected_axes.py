@@ -1,0 +1,62 @@
+"""Joints whose axis has length 0: Gazebo Classic's ODE uses the x axis of the world."""
+
+import pytest
+
+import cartwheel
+from cartwheel.api import World
+from cartwheel.codes.robot import AXIS_ZERO
+from cartwheel.description import load_text
+from cartwheel.errors import DescriptionError
+
+ROBOT = """<robot name="r">
+<link name="base">{mass}</link>
+<link name="arm">{mass}</link>
+<joint name="turn" type="continuous"><parent link="base"/><child link="arm"/>
+<origin rpy="0 0 1.5707963"/>
+<axis xyz="0 0 0"/></joint>
+<gazebo{reference}>{plugins}</gazebo>
+</robot>"""
+MASS = '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+CLASSIC = '<plugin name="p" filename="libgazebo_ros_p3d.so"><bodyName>base</bodyName></plugin>'
+CAMERA = (
+    '<sensor name="s" type="camera"><plugin name="p" filename="libgazebo_ros_camera.so"/></sensor>'
+)
+GZ = '<plugin name="q" filename="gz-sim-pose-publisher-system"/>'
+
+
+def text(plugins, reference=""):
+    return ROBOT.format(mass=MASS, plugins=plugins, reference=reference)
+
+
+@pytest.mark.parametrize(("plugins", "reference"), [(CLASSIC, ""), (CAMERA, ' reference="arm"')])
+def test_the_axis_is_that_of_the_world_in_gazebo_classic(plugins, reference):
+    """The joint is turned by 90° about z, so the x axis of the world is its -y axis."""
+    robot = load_text(text(plugins, reference))
+    assert robot.joint("turn").axis.xyz == pytest.approx((0, -1, 0), abs=1e-6)
+    (found,) = (each for each in robot.diagnostics if each.code is AXIS_ZERO)
+    assert (found.severity, found.origin.line) == ("warning", 6)
+    assert found.values["joint"] == "turn"
+
+
+def test_the_joint_turns_about_the_x_axis_of_the_world():
+    with World("empty") as world:
+        model = world.spawn(load_text(text(CLASSIC)), z=1.0)
+        world.run(0.1)
+        axis = world.session.simulation.data.joint("r::turn").xaxis
+        assert abs(axis[0]) == pytest.approx(1, abs=1e-3), model
+
+
+@pytest.mark.parametrize(
+    "plugins", ["", GZ, CLASSIC + GZ, '<plugin name="q" filename="libown.so"/>']
+)
+def test_gz_sim_does_not_load_such_a_robot(plugins):
+    with pytest.raises(DescriptionError) as raised:
+        load_text(text(plugins))
+    assert raised.value.code is AXIS_ZERO
+
+
+def test_check_reports_the_axis_once_as_an_error(tmp_path):
+    path = tmp_path / "r.urdf"
+    path.write_text(text(CLASSIC))
+    (found,) = (each for each in cartwheel.check(path).findings if each.code is AXIS_ZERO)
+    assert found.severity == "error"
