@@ -91,6 +91,7 @@ def missing_movers(
         if each.code is running.CONTROLLER_NOT_STARTED
         and each.values.get("cause") not in _ALTERNATIVE
     }
+    unread: Diagnostic | None = None
     for name in verdict.spawned:
         if name in verdict.controllers:
             continue
@@ -101,9 +102,10 @@ def missing_movers(
                 # The part that contains the joint may be in a file that is absent.
                 reason = coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
             yield Fault(test="controller", subject=name, reason=reason)
-        unread = next((each for each in verdict.observed if _contains(each, name)), None)
-        if unread is not None:
-            yield Fault(test="controller", subject=name, reason=unread)
+        found = next((each for each in verdict.observed if _contains(each, name)), None)
+        if found is not None:
+            unread = found
+            yield Fault(test="controller", subject=name, reason=found)
     apart = [each for each in verdict.observed if _is_misplaced(each)]
     for each in apart:
         yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
@@ -137,7 +139,7 @@ def missing_movers(
         reason = most_severe(stopped) or most_severe(
             each for each in said if each.code in _CONTROL and _concerns(each, tag)
         )
-        if reason is None and not undefined:
+        if reason is None and not undefined and unread is None:
             reason = other_ros(description, tag) or _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)

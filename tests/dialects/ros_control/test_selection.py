@@ -345,6 +345,43 @@ def test_a_controller_whose_parameters_a_launch_file_names_is_not_reported(
         assert not coded(world, CONTROLLER_UNDEFINED)
 
 
+ABSENT = '<rosparam file="$(find {package})/config/absent.yaml"{ns}/>'
+
+
+@pytest.mark.parametrize(
+    ("parameters", "reported"),
+    [
+        (ABSENT.format(package="arm", ns=' ns="arm/bad"'), True),
+        (ABSENT.format(package="other", ns=' ns="arm/bad"'), False),
+        (ABSENT.format(package="arm", ns=' ns="arm/idle"'), False),
+        (ABSENT.format(package="arm", ns=""), False),
+        (ABSENT.format(package="arm", ns=' ns="bad"').replace("absent", "$(env X)"), False),
+    ],
+    ids=["absent", "package", "idle", "several", "unknown"],
+)
+def test_a_missing_file_with_the_parameters_of_a_started_controller_is_reported(
+    model, tmp_path, parameters, reported
+):
+    held = beam("beam", "world") + transmission("beam_joint", "Position")
+    model(
+        "",
+        launch__sim_dot_launch=STARTER.replace("</launch>", f"\n{parameters}</launch>"),
+        robots__arm_dot_urdf=robot(held, ROS1),
+        config__good_dot_yaml=STATES,
+    )
+    path = tmp_path / "arm/robots/arm.urdf"
+    for found in (try_robot(path, standing=1.0).observed, cw.check(path).findings):
+        unread = [each for each in found if each.code is CONTROLLERS_FILE_UNREADABLE]
+        assert [each.values["controllers"] for each in unread] == [("bad",)] * reported
+        assert [each.origin.line for each in unread] == [7] * reported
+        assert not any(each.code is CONTROLLERS_NOT_FOUND for each in found)
+    if reported:
+        faults = try_robot(path, standing=1.0).faults
+        assert [(each.subject, each.code) for each in faults] == [
+            ("bad", CONTROLLERS_FILE_UNREADABLE)
+        ]
+
+
 @pytest.mark.parametrize("joint", ["beam", "wheel"])
 def test_controllers_that_a_distant_launch_file_starts_are_only_those_of_the_robot(tmp_path, joint):
     """A copy of a robot in a group of packages without controllers, which no launch file starts."""

@@ -10,6 +10,17 @@ from cartwheel.errors import Origin
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Unfound:
+    """A YAML file with the parameters of one controller of ROS 1 that does not exist."""
+
+    controller: str
+    """The name of the controller: the end of the namespace into which the file is loaded."""
+    file: Path
+    origin: Origin
+    """The ``<rosparam>``."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class LaunchUse:
     """A robot description in a launch file, including what the launch file includes."""
 
@@ -35,6 +46,8 @@ class LaunchUse:
     """Those of them for which it may be a mistake: it does not state that they are inactive."""
     absent: tuple[Path, ...] = ()
     """YAML files that it loads and that do not exist."""
+    unfound: tuple[Unfound, ...] = ()
+    """Those of them that certainly do not exist: their packages were found."""
     sought: tuple[tuple[str, str], ...] = ()
     """The controllers that spawners of ROS 1 start: the namespace of the manager, and the name in
     it. Those whose namespace is uncertain are left out."""

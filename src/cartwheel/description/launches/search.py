@@ -136,6 +136,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 loaded=only_loaded((name for _, name in facts.loaded), spawned),
                 undecided=frozenset(facts.undecided),
                 absent=tuple(facts.lost),
+                unfound=tuple(facts.unfound),
                 sought=tuple(dict.fromkeys(facts.sought)),
                 places=tuple(dict.fromkeys(facts.places)),
                 simulated=facts.simulated,

@@ -24,6 +24,7 @@ from cartwheel.description.launches.controllers import (
     by_spawner,
 )
 from cartwheel.description.launches.effort import UNKNOWN, Effort
+from cartwheel.description.launches.launch_use import Unfound
 from cartwheel.description.launches.python_variables import Place, Uncertain
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
@@ -92,6 +93,8 @@ class Facts:
     """See `LaunchUse.sought`."""
     lost: list[Path] = field(default_factory=list)
     """Such files that do not exist."""
+    unfound: list[Unfound] = field(default_factory=list)
+    """See `LaunchUse.unfound`."""
     spawned: list[tuple[str, str]] = field(default_factory=list)
     """Controllers that are started, with the namespaces of their managers."""
     loaded: list[tuple[str, str]] = field(default_factory=list)

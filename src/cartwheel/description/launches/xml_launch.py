@@ -14,6 +14,7 @@ from cartwheel.description.expressions import Function
 from cartwheel.description.launches.bridging import BRIDGES
 from cartwheel.description.launches.effort import UNKNOWN, limited
 from cartwheel.description.launches.evaluation import evaluated
+from cartwheel.description.launches.launch_use import Unfound
 from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import Facts
 from cartwheel.description.launches.written import has_controllers
@@ -83,6 +84,8 @@ class _Reader:
                 certain = not self._inside_node and "param" not in node.attributes
                 space = self._value(node, "ns")
                 facts.parameters(self._value(node, "file"), space, certain=certain)
+                if certain:
+                    self._find(node, space)
             elif node.attributes.get("command", "load") == "load" and has_controllers(node.text):
                 facts.written(self._path, self._value(node, "ns"))
         elif tag == "ros_gz_bridge":
@@ -113,6 +116,16 @@ class _Reader:
                 named = child.attributes.get("name") if child.tag == "param" else None
                 if named == "config_file" and self._holds(child):
                     facts.bridge(self._value(child, "value"))
+
+    def _find(self, node: Node, space: str) -> None:
+        """Notes the file of a ``<rosparam>`` with one controller's parameters if it is missing."""
+        stated = node.attributes["file"]
+        packages = [words for kind, words in _CALL.findall(stated) if kind == "find"]
+        path, name = Path(self._value(node, "file").strip()), space.strip("/ ").rpartition("/")[2]
+        known = path in self._facts.lost and len(packages) == stated.count("$") == 1
+        found = known and f'package "{packages[0].strip()}"' not in self._facts.absent
+        if found and re.fullmatch(r"\w+", name):
+            self._facts.unfound.append(Unfound(controller=name, file=path, origin=node.origin))
 
     def _space(self, node: Node) -> str:
         """The namespace of an element."""

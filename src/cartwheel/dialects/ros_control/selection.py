@@ -32,6 +32,7 @@ from cartwheel.dialects.ros_control.launched.problems import (
     misplaced_names,
     only_loaded,
     undefined,
+    unfound,
     unreadable,
 )
 from cartwheel.dialects.ros_control.suggestion import (
@@ -87,7 +88,7 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     starter = _starter(file, use, launches)
     loaded = () if starter is None else starter.controllers
     if not suggested(robot) and not suggested(robot, among=loaded):
-        problems = (*undefined(robot, starter), *only_loaded(starter))
+        problems = (*unfound(starter), *undefined(robot, starter), *only_loaded(starter))
         idle = () if starter is None else as_named(starter.loaded, ())
         return Selection(files=(), names=(), idle=idle, problems=problems)
     # The user need not start this launch file, and here, the controllers work.
@@ -160,7 +161,8 @@ def selection(
         wrong = named_in(itertools.chain(*map(misplaced_names, apart)), files, robot)
         names = tuple(name for name in names if name not in wrong)
         files = files if names else ()
-    problems = (*lost, *reported, *apart, *only_loaded(starting))
+    missing = unfound(starting) if is_of_ros1(robot) else ()
+    problems = (*lost, *missing, *reported, *apart, *only_loaded(starting))
     launch = None if starting is None else starting.file
     return Selection(files=files, names=names, idle=idle, problems=problems, launch=launch)
 

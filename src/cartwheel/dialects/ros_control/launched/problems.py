@@ -12,7 +12,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from cartwheel import yaml_text
-from cartwheel.codes.devices import CONTROLLER_ONLY_LOADED, CONTROLLER_UNDEFINED
+from cartwheel.codes.devices import (
+    CONTROLLER_ONLY_LOADED,
+    CONTROLLER_UNDEFINED,
+    CONTROLLERS_FILE_UNREADABLE,
+)
 from cartwheel.description.launches import LaunchUse, root_of
 from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.model import RobotDescription
@@ -46,6 +50,22 @@ def unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnost
             except PluginError as error:
                 found = error.diagnostic()
                 yield replace(found, values={**found.values, "controllers": held})
+
+
+def unfound(starter: LaunchUse | None) -> Iterator[Diagnostic]:
+    """The missing files with the parameters of the controllers that a launch file starts."""
+    if starter is None:
+        return
+    started = {name.rpartition("/")[2] for name in starter.spawned}
+    for each in starter.unfound:
+        if each.controller in started:
+            yield CONTROLLERS_FILE_UNREADABLE.diagnostic(
+                f'the controller file "{each.file}" does not exist, so the controller '
+                f'"{each.controller}" does not start',
+                origin=each.origin,
+                values={"file": str(each.file), "controllers": (each.controller,)},
+                hint="roslaunch stops at the <rosparam>.",
+            )
 
 
 def undefined(
