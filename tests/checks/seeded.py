@@ -410,6 +410,8 @@ WITHOUT_PLACE: dict[str, Case] = {
         None, "Reverse"),
     "mimic ring": ("mimic-unknown", [('mimic joint="arm_joint"', 'mimic joint="finger_joint"')],
         'mimic joint="finger_joint"', "free"),
+    "mimic of a fixed joint": ("mimic-unknown", [('mimic joint="arm_joint"', 'mimic joint="caster_joint"')],
+        'mimic joint="caster_joint"', "slide along an axis"),
     "limits 0": ("limit-zero", [('lower="-1" upper="1"', 'lower="0" upper="0"')],
         'lower="0" upper="0"', 'type="fixed"'),
     "swapped": ("wheels-swapped", [("<leftJoint>left", "<leftJoint>right"),

@@ -19,6 +19,7 @@ from cartwheel.checks.kinematic_tree import (
 from cartwheel.checks.masses import moments_of
 from cartwheel.description.elements.node import Node
 from cartwheel.description.inertia import impossibility
+from cartwheel.description.model import WITHOUT_POSITION
 
 _PLAIN = {"ixx": "1", "iyy": "1", "izz": "1"}
 
@@ -36,7 +37,12 @@ def mend(root: Node) -> set[str]:
         if mimic is None:
             continue
         leader = nodes.text_of(mimic, "joint")
-        if leader not in joints or name in mimic_chain(joints, leader):
+        if (
+            leader not in joints
+            or nodes.text_of(joints[leader], "type") in WITHOUT_POSITION
+            or nodes.text_of(joint, "type") in WITHOUT_POSITION
+            or name in mimic_chain(joints, leader)
+        ):
             joint.drop(mimic)
     for node in nodes.children(root, "gazebo"):
         reference = nodes.text_of(node, "reference")

@@ -29,7 +29,10 @@ MULTIPLE_ROOTS = Code(
     "CW208", "multiple-roots", "error", "a link is not connected to the rest of the robot"
 )
 MIMIC_UNKNOWN = Code(
-    "CW209", "mimic-unknown", "error", "a joint mimics itself, or a joint that does not exist"
+    "CW209",
+    "mimic-unknown",
+    "error",
+    "a joint mimics itself, or a joint that does not exist or has no position",
 )
 REFERENCE_UNKNOWN = Code(
     "CW210",

@@ -36,6 +36,10 @@ JointType = Literal[
 ]
 
 
+WITHOUT_POSITION: frozenset[JointType] = frozenset(("fixed", "ball", "floating", "planar"))
+"""Types of joints that do not have one position, which other joints could mimic."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Element:
     """A parameter tree of a plugin or sensor, as written, which the plugin or sensor reads."""

@@ -9,7 +9,7 @@ from PIL import Image
 from tests.coded import named, raises
 
 from cartwheel.codes import files, tags
-from cartwheel.codes.robot import INERTIA_IMPOSSIBLE
+from cartwheel.codes.robot import INERTIA_IMPOSSIBLE, MIMIC_UNKNOWN
 from cartwheel.description import load_text
 from cartwheel.description import model as m
 from cartwheel.description.elements.xml import parse
@@ -521,6 +521,18 @@ def test_mimic_with_a_reference():
     )
     # q = 2 (lead - 0.25) + 1
     assert found.joint("j").mimic == m.Mimic(joint="lead", multiplier=2, offset=0.5)
+
+
+@pytest.mark.parametrize("kind", ["fixed", "ball"])
+def test_a_joint_cannot_mimic_one_without_a_position(kind):
+    with raises(MIMIC_UNKNOWN, joint="j", name="lead"):
+        robot(
+            f"""<link name="a"/><link name="b"/><link name="c"/>
+            <joint name="lead" type="{kind}"><parent>a</parent><child>b</child></joint>
+            <joint name="j" type="revolute"><parent>a</parent><child>c</child><axis>
+              <mimic joint="lead"><multiplier>2</multiplier></mimic></axis></joint>""",
+            "1.11",
+        )
 
 
 def test_sensors_and_plugins():

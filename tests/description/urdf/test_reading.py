@@ -378,6 +378,23 @@ def test_of_a_ring_of_mimics_one_joint_moves_independently():
     assert leaders == {"j": None, "k": "j", "l": "k"}
 
 
+@pytest.mark.parametrize("kind", ["fixed", "floating", "planar"])
+def test_a_joint_that_mimics_one_without_a_position_moves_independently(kind):
+    text = urdf(
+        *(link(each) for each in "abcd"),
+        joint("lead", "a", "b", kind=kind),
+        joint("j", "a", "c", '<mimic joint="lead"/>', "continuous"),
+        joint("k", "a", "d", '<mimic joint="j"/>', kind),
+    )
+    robot = load(text)
+    errors = [each.values["joint"] for each in robot.diagnostics if each.severity == "error"]
+    assert errors == (["j"] if kind == "fixed" else ["j", "k"])
+    assert not any(each.mimic for each in robot.joints)
+    with cw.World("empty") as world:
+        world.spawn(robot)
+        world.run(0.1)
+
+
 def test_a_mesh_with_a_scale_of_0_is_left_out():
     robot = load(
         urdf(

@@ -121,10 +121,10 @@ def _build(
                 new_joints.append((node, joint))
                 all_joints.append(joint)
                 sensors += read_joint_sensors(node, joint, frames, ctx)
-    names = [joint.name for joint in all_joints]
+    by_name = {joint.name: joint for joint in all_joints}
     for node, joint in new_joints:
         with _blaming(node):
-            check_mimic(joint, names)
+            check_mimic(joint, by_name)
     for node, frame in framed:
         if node.get("type") == GEARBOX:
             with _blaming(node):

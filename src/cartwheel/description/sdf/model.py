@@ -157,9 +157,9 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         raise NoLinksError(
             f'model "{name}" has no links', origin=node.origin, values={"name": name}
         )
-    names = [joint.name for joint in model.joints]
+    by_name = {joint.name: joint for joint in model.joints}
     for joint in model.joints:
-        check_mimic(joint, names)
+        check_mimic(joint, by_name)
     return model
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from cartwheel.codes.robot import MIMIC_UNKNOWN
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
-from cartwheel.description.model import Joint, Link, Sensor
+from cartwheel.description.model import WITHOUT_POSITION, Joint, Link, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import Frames
 from cartwheel.description.sdf.joint import joint_frame
@@ -104,9 +104,25 @@ def judge(
     ]
 
 
-def check_mimic(joint: Joint, names: Collection[str]) -> None:
-    """Rejects a joint that mimics a joint that does not exist."""
-    if joint.mimic is not None and joint.mimic.joint not in names:
+def check_mimic(joint: Joint, joints: Mapping[str, Joint]) -> None:
+    """Rejects a joint that mimics a joint that does not exist or does not have one position.
+
+    Raises:
+        DescriptionError: It does.
+    """
+    if joint.mimic is None:
+        return
+    names = list(joints)
+    leader = joints.get(joint.mimic.joint)
+    if leader is not None and leader.type in WITHOUT_POSITION:
+        raise DescriptionError(
+            f'joint "{joint.name}" mimics "{leader.name}", which is a {leader.type} joint',
+            code=MIMIC_UNKNOWN,
+            values={"joint": joint.name, "name": leader.name},
+            origin=joint.origin,
+            hint="A joint can only mimic a joint that turns about or slides along an axis.",
+        )
+    if leader is None:
         raise DescriptionError(
             f'joint "{joint.name}" mimics "{joint.mimic.joint}", which does not exist',
             code=MIMIC_UNKNOWN,

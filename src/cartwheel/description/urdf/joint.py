@@ -9,7 +9,7 @@ from dataclasses import replace
 from cartwheel.codes import robot, tags
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import Node
-from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
+from cartwheel.description.model import WITHOUT_POSITION, Axis, Joint, JointType, Mimic, SoftLimits
 from cartwheel.description.sdf.joint import usable_limits
 from cartwheel.description.urdf.context import UrdfContext, read_origin
 from cartwheel.errors import Value
@@ -260,18 +260,27 @@ def _soft(node: Node) -> SoftLimits:
 
 
 def without_invalid_mimics(joints: Sequence[Joint], ctx: UrdfContext) -> list[Joint]:
-    """The joints; those that mimic a missing joint, or each other, move independently instead."""
+    """The joints; those that mimic a joint without a position, or each other, move independently
+    instead.
+    """
     by_name = {joint.name: joint for joint in joints}
     for joint in joints:
         if joint.mimic is None:
             continue
         leader, name = joint.mimic.joint, joint.name
-        others = sorted(set(by_name) - {name})
         values: dict[str, Value] = {"joint": name, "name": leader}
         if leader not in by_name:
+            others = sorted(set(by_name) - {name})
             message = f'joint "{name}" mimics the joint "{leader}", which does not exist'
             hint = suggestion(leader, others)
             values["meant"] = meant(leader, others)
+        elif joint.type == "fixed":
+            by_name[name] = replace(joint, mimic=None)  # it does not move in Gazebo either
+            continue
+        elif joint.type in WITHOUT_POSITION:
+            message, hint = f'joint "{name}" is {joint.type}, so it cannot mimic "{leader}"', ""
+        elif (kind := by_name[leader].type) in WITHOUT_POSITION:
+            message, hint = f'joint "{name}" mimics the joint "{leader}", which is {kind}', ""
         elif _follows_itself(joint, by_name):
             message, hint = f'joint "{name}" mimics itself through "{leader}"', ""
         else:

@@ -9,6 +9,7 @@ from cartwheel.checks.kinematic_tree import elements_of, link_names, mimic_chain
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.model import WITHOUT_POSITION
 from cartwheel.description.urdf.gazebo_tags import referable
 from cartwheel.errors import Diagnostic
 
@@ -16,6 +17,7 @@ from cartwheel.errors import Diagnostic
 @rule(robot_codes.MIMIC_UNKNOWN)
 def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
     joints = {nodes.name_of(node): node for node in elements_of(subject, "joint")}
+    types = {name: nodes.text_of(joint, "type") for name, joint in joints.items()}
     for name, joint in joints.items():
         mimic = nodes.child(joint, "mimic")
         if mimic is None:
@@ -31,6 +33,18 @@ def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 values={"joint": name, "leader": leader},
                 origin=mimic.origin,
                 mark=f'joint="{mimic.attributes.get("joint", "")}"',
+            )
+        elif types[name] == "fixed":
+            continue  # it does not move in any case
+        elif types[name] in WITHOUT_POSITION or types[leader] in WITHOUT_POSITION:
+            yield robot_codes.MIMIC_UNKNOWN.diagnostic(
+                message=f'joint "{name}" is {types[name]}, so it cannot mimic "{leader}"'
+                if types[name] in WITHOUT_POSITION
+                else f'joint "{name}" mimics "{leader}", which is {types[leader]}',
+                values={"joint": name, "leader": leader},
+                origin=mimic.origin,
+                mark=f'joint="{leader}"',
+                hint="Only joints that turn about or slide along an axis can mimic each other.",
             )
         elif name in mimic_chain(joints, leader):
             yield robot_codes.MIMIC_UNKNOWN.diagnostic(
