@@ -128,3 +128,29 @@ def test_a_missing_mesh_of_another_link_stays_the_reason(tmp_path):
     verdict = try_robot(written(tmp_path, base, LIMB.replace("{collision}", "")), standing=3.0)
     stand = next(each for each in verdict.faults if each.test == "stand")
     assert stand.code is FILE_MISSING
+
+
+LEG = """<include><uri>model://absent/leg</uri>{name}</include>
+<joint name="hip" type="fixed"><parent>body</parent><child>{instance}::{link}</child></joint>
+<plugin name="p" filename="gz-sim-joint-position-controller-system">
+<joint_name>{instance}::knee</joint_name></plugin>"""
+
+
+@pytest.mark.parametrize(
+    ("name", "instance", "explained"),
+    [("<name>l1</name>", "l1", True), ("", "leg", True), ("<name>l1</name>", "l2", False)],
+)
+def test_what_is_missing_in_a_model_that_was_not_found_is_explained_by_its_include(
+    tmp_path, name, instance, explained
+):
+    leg = LEG.format(name=name, instance=instance, link="thigh")
+    path = tmp_path / "model.sdf"
+    path.write_text(
+        '<sdf version="1.9"><model name="robot"><link name="body"><inertial><mass>1</mass>'
+        '</inertial><collision name="c"><pose>0.3 0 0 0 0 0</pose><geometry><box>'
+        f"<size>0.1 0.1 0.1</size></box></geometry></collision></link>{leg}</model></sdf>"
+    )
+    faults = try_robot(path, standing=0.5).faults
+    assert {each.test for each in faults} == {"plugin", "stand"}
+    assert all((each.code is FILE_MISSING) is explained for each in faults), faults
+    assert all(each.source == "file" for each in faults)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
@@ -50,6 +51,29 @@ def faults(
         description: The robot.
         findings: Returns the findings of `cartwheel check`, which takes time.
     """
+    for fault in _faults(verdict, description, findings):
+        absent = None if fault.reason is None else _absent_model(fault.reason, description)
+        yield fault if absent is None else replace(fault, reason=absent)
+
+
+def _absent_model(reason: Diagnostic, description: RobotDescription) -> Diagnostic | None:
+    """The include of the model that would contain what does not exist, such as ``leg::knee``."""
+    model, inside, _ = str(reason.values.get("name", "")).partition("::")
+    if not inside:
+        return None
+    return next(
+        (
+            each
+            for each in description.diagnostics
+            if each.values.get("left_out") == "include" and each.values.get("instance") == model
+        ),
+        None,
+    )
+
+
+def _faults(
+    verdict: Verdict, description: RobotDescription, findings: Callable[[], Sequence[Diagnostic]]
+) -> Iterator[Fault]:
     if verdict.failure is not None:
         reason = verdict.failure
         if verdict.loaded and reason.code is world.SIMULATION_DIVERGED:

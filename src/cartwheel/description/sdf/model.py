@@ -89,7 +89,8 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
             found = open_include(each, ctx)
         except NotThereError as missing:
             each.mark()
-            ctx.report(loss(missing, "the model is ignored", of="include"))
+            values = {"instance": _instance(each)}
+            ctx.report(loss(missing, "the model is ignored", of="include", values=values))
             continue
         if found.node.tag == "light":
             raise each.fail(
@@ -161,6 +162,13 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     for joint in model.joints:
         check_mimic(joint, by_name)
     return model
+
+
+def _instance(include: Node) -> str:
+    """The name that an included model would have, unless its file states another one."""
+    stated = include.text_at("name").strip()
+    uri = include.text_at("uri").strip()
+    return stated or uri.removesuffix("/model.sdf").rstrip("/").rpartition("/")[2]
 
 
 @contextmanager
