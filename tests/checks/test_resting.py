@@ -326,6 +326,22 @@ def test_a_pendulum_on_two_wheels_does_not_rest_where_it_balances(tmp_path, heig
     assert finding.values["falls"] == falls
 
 
+@pytest.mark.wording
+@pytest.mark.parametrize(("length", "how"), [(0.4, "tips by"), (0.08, "falls over by")])
+def test_a_robot_on_two_wheels_tips_until_its_body_touches_the_ground(tmp_path, length, how):
+    """An edge at x, z from the axle touches at the angle from straight down to it, less that at
+    which an edge at its distance touches. The front edge of a short body never does, but the top
+    of the mast, which is ahead.
+    """
+    text = pendulum(0.5).replace("0.2 0.1 0.02", f"{length} 0.1 0.02")
+    x, z = (length / 2, -0.01) if length > 0.1 else (0.02, 0.5 + 0.25 / 2)
+    angle = np.arctan2(x, -z) - np.arccos(RADIUS / np.hypot(x, z))
+    (finding,) = balanced(tmp_path, text)
+    assert finding.values["angle"] == pytest.approx(angle, abs=1e-3)
+    assert finding.values["touches"] == ("base_link" if length > 0.1 else "mast")
+    assert f"{how} {np.degrees(angle):.2g}°" in finding.message
+
+
 @pytest.mark.parametrize(
     ("name", "shape"), [("caster", f'<box size="{BALL} {BALL} {BALL}"/>'),
                         ("knob", f'<sphere radius="{BALL / 2}"/>')]

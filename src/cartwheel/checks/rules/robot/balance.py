@@ -37,6 +37,8 @@ _HIGH = 0.75
 """Height of links that do not touch the ground, relative to that of the robot."""
 _TILTED = 0.1
 """Smallest angle of a robot that is reported to be tilted, rad."""
+_FALLEN = math.radians(30.0)
+"""Smallest angle at which a robot is said to have fallen over."""
 _CASTER = re.compile(r"cast[eo]r|ball", re.IGNORECASE)
 _SLIPPERY = 0.1
 """Largest friction coefficient of a part that is meant to slide."""
@@ -139,15 +141,16 @@ def _on_an_axle(robot: Robot, center: Floats, rest: Rest | None) -> list[Diagnos
     casters = _raised_casters(robot, others, joints[0])
     normal = rest.normal if rest is not None else np.array([0.0, 0.0, 1.0])
     falls = bool((center - places[0]) @ normal > 0.0)
+    values: dict[str, Value] = {}
     if casters:
         how = "tips onto a caster"
     elif falls:
-        how = "falls over, unless a program balances it"
+        how, values = _fall(robot, others, joints[0], center)
     else:
         how = "pitches while it drives, unless a program balances it"
     message = f"the robot stands only on wheels with a common axle, so it {how}"
     hint = "Add a caster, or start the program that balances the robot."
-    values: dict[str, Value] = {"outside": 0.0, "falls": falls}
+    values |= {"outside": 0.0, "falls": falls}
     if casters:
         nearest = min(casters.values())
         far = f"{1000 * nearest:.3g} mm"
@@ -160,6 +163,59 @@ def _on_an_axle(robot: Robot, center: Floats, rest: Rest | None) -> list[Diagnos
             message=message, values=values, origin=robot.description.origin, hint=hint
         )
     ]
+
+
+def _fall(
+    robot: Robot, links: Sequence[str], wheel: Joint, center: Floats
+) -> tuple[str, dict[str, Value]]:
+    """What a robot does whose centre of mass is above the axle of its wheels.
+
+    Args:
+        robot: The robot.
+        links: Its links apart from the wheels.
+        wheel: The joint of a wheel on the axle.
+        center: Its centre of mass in the model frame, m, shape (3,).
+
+    Returns:
+        The end of a sentence, and the angle in rad and the link that touches the ground then.
+    """
+    tilts = _angles(robot, links, wheel)
+    ahead = float((center - np.array(wheel_middle(robot, wheel))) @ _ahead(robot, wheel))
+    level = abs(ahead) < _MARGIN * robot.size
+    sides = (0, 1) if level else (0,) if ahead > 0 else (1,)
+    angle, link = min(
+        ((each[side], name) for name, each in tilts.items() for side in sides),
+        default=(np.inf, ""),
+    )
+    if not np.isfinite(angle):
+        return "falls over, unless a program balances it", {}
+    degrees = f"{math.degrees(angle):.2g}°"
+    how = f'tips by {degrees} until "{link}" touches the ground'
+    if angle > _FALLEN:
+        how = f'falls over by {degrees} until "{link}" touches the ground'
+    return f"{how}, unless a program balances it", {"angle": angle, "touches": link}
+
+
+def _ahead(robot: Robot, wheel: Joint) -> Floats:
+    """The horizontal direction across an axle, shape (3,), or a shorter vector if it is upright."""
+    ahead = np.cross(wheel_axis(robot, wheel), (0.0, 0.0, 1.0))
+    length = float(np.linalg.norm(ahead))
+    return ahead if length < CAMBER else ahead / length
+
+
+def _angles(robot: Robot, links: Sequence[str], wheel: Joint) -> dict[str, tuple[float, float]]:
+    """The angles by which links turn about an axle until they touch the ground; see `_tilts`."""
+    radius, ahead = wheel_radius(robot, wheel), _ahead(robot, wheel)
+    axle = np.array(wheel_middle(robot, wheel))
+    if radius is None or np.linalg.norm(ahead) < CAMBER:
+        return {}
+    tilts: dict[str, tuple[float, float]] = {}
+    for name in links:
+        clouds = [solid.placed(robot.links[name].pose) for solid in robot.collisions[name]]
+        if clouds:
+            points = np.concatenate(clouds) - axle
+            tilts[name] = _tilts(points @ ahead, -points[:, 2], radius)
+    return tilts
 
 
 def _named(casters: Mapping[str, float]) -> str:
@@ -180,18 +236,10 @@ def _raised_casters(robot: Robot, links: Sequence[str], wheel: Joint) -> dict[st
         links: Its links apart from the wheels.
         wheel: The joint of a wheel on the axle.
     """
-    radius = wheel_radius(robot, wheel)
-    axis, axle = wheel_axis(robot, wheel), np.array(wheel_middle(robot, wheel))
-    ahead = np.cross(axis, (0.0, 0.0, 1.0))
-    if radius is None or np.linalg.norm(ahead) < CAMBER:
+    radius, axle = wheel_radius(robot, wheel), np.array(wheel_middle(robot, wheel))
+    tilts = _angles(robot, links, wheel)
+    if radius is None:
         return {}
-    ahead /= np.linalg.norm(ahead)
-    tilts: dict[str, tuple[float, float]] = {}
-    for name in links:
-        clouds = [solid.placed(robot.links[name].pose) for solid in robot.collisions[name]]
-        if clouds:
-            points = np.concatenate(clouds) - axle
-            tilts[name] = _tilts(points @ ahead, -points[:, 2], radius)
     found = {}
     for side in range(2):
         least = min((each[side] for each in tilts.values()), default=np.inf)
