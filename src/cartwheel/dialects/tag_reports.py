@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from cartwheel.codes import devices
+from cartwheel.codes import tags as tag_codes
 from cartwheel.description.elements import numbers
 from cartwheel.description.model import Element
 from cartwheel.errors import Diagnostic, PluginError
@@ -33,6 +34,32 @@ def unknown(element: Element, known: Iterable[str]) -> Diagnostic:
         values={"parameter": element.tag, "meant": meant, "of_sensor": of_sensor},
         mark=f"<{element.tag}",
     )
+
+
+def repeated(used: Element, siblings: Collection[Element]) -> list[Diagnostic]:
+    """The warning about a tag that is stated again with another value.
+
+    Gazebo's plugins get the first element of a name (``sdf::Element::GetElement``).
+
+    Args:
+        used: The first tag.
+        siblings: The tags in the plugin, in which nested tags are not found.
+    """
+    value = used.text.strip()
+    other = next(
+        (each for each in siblings if each.tag == used.tag and each.text.strip() != value), None
+    )
+    if other is None or all(each is not used for each in siblings):
+        return []
+    return [
+        tag_codes.TAG_REPEATED.diagnostic(
+            f"<{used.tag}> is repeated with another value, so only the first is used",
+            origin=other.origin,
+            hint=f"The first is at {used.origin}." if used.origin is not None else "",
+            values={"tag": used.tag, "used": value, "value": other.text.strip()},
+            mark=f"<{used.tag}",
+        )
+    ]
 
 
 def kept(error: PluginError, element: Element, default: str, allowed: Sequence[str]) -> Diagnostic:

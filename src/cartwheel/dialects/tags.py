@@ -13,7 +13,7 @@ from cartwheel.codes import devices
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.description.model import Element
-from cartwheel.dialects.tag_reports import kept, unknown
+from cartwheel.dialects.tag_reports import kept, repeated, unknown
 from cartwheel.dialects.tag_roles import JOINT_ROLES, Role, TagRole
 from cartwheel.errors import Diagnostic, Origin, PluginError, Value
 
@@ -171,6 +171,7 @@ def read(
                     for child in element.find_all(name)
                 )
             else:
+                diagnostics += repeated(stated, element.children)
                 stated = _cut(kind, stated, diagnostics)
                 try:
                     values[item.name] = _value(kind, stated, item.metadata)
