@@ -60,3 +60,26 @@ def test_check_reports_the_axis_once_as_an_error(tmp_path):
     path.write_text(text(CLASSIC))
     (found,) = (each for each in cartwheel.check(path).findings if each.code is AXIS_ZERO)
     assert found.severity == "error"
+
+
+MODEL = """<sdf version="{version}"><model name="m"><link name="base"/>
+<link name="arm"><pose>0 0 0 0 0 1.5707963</pose></link>
+<joint name="turn" type="revolute"><parent>base</parent><child>arm</child>
+<axis><xyz>0 0 0</xyz>{frame}</axis></joint>
+{plugins}</model></sdf>"""
+IN_MODEL = "<use_parent_model_frame>1</use_parent_model_frame>"
+
+
+@pytest.mark.parametrize("frame", ["", IN_MODEL])
+def test_a_model_for_gazebo_classic_is_loaded(frame):
+    model = MODEL.format(version="1.6", frame=frame, plugins=CLASSIC)
+    robot = load_text(model)
+    assert robot.joint("turn").axis.xyz == pytest.approx((0, -1, 0), abs=1e-6)
+    assert [each.severity for each in robot.diagnostics if each.code is AXIS_ZERO] == ["warning"]
+
+
+@pytest.mark.parametrize(("version", "plugins"), [("1.8", CLASSIC), ("1.6", GZ), ("1.6", "")])
+def test_a_model_for_gz_sim_is_not_loaded(version, plugins):
+    with pytest.raises(DescriptionError) as raised:
+        load_text(MODEL.format(version=version, frame="", plugins=plugins))
+    assert raised.value.code is AXIS_ZERO

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 Version = tuple[int, int]
 OLDEST: Version = (1, 0)
+NOT_CLASSIC: Version = (1, 8)
+"""The oldest version that Gazebo Classic does not read."""
 MODERN: Version = (1, 3)
 """Older versions are converted; see `oldest`."""
 NEWEST: Version = (1, 12)
@@ -39,6 +41,8 @@ class Context:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     including: tuple[Path, ...] = ()
     """The chain of included files, outermost first."""
+    classic: bool = False
+    """Whether the description has plugins for Gazebo Classic, and none for gz-sim."""
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Adds a diagnostic."""

@@ -7,11 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cartwheel.codes import files, tags
+from cartwheel.description.elements.simulator import is_classic
 from cartwheel.description.elements.xml import Node, read_file
 from cartwheel.description.files import fuel
 from cartwheel.description.losses import loss
 from cartwheel.description.model import PluginTag
-from cartwheel.description.sdf.context import MAX_INCLUDES, MODERN, Context, read_version
+from cartwheel.description.sdf.context import (
+    MAX_INCLUDES,
+    MODERN,
+    NOT_CLASSIC,
+    Context,
+    read_version,
+)
 from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.errors import DescriptionError, Origin
@@ -66,7 +73,9 @@ def open_include(node: Node, ctx: Context) -> Included:
     version = ctx.version if root.tag == "robot" else read_version(root)
     if root.tag != "robot" and version < MODERN:
         root = as_modern(root)
-    inner = Context(ctx.packages, version, ctx.diagnostics, (*ctx.including, path))
+    including = (*ctx.including, path)
+    classic = version < NOT_CLASSIC and (ctx.classic or is_classic(root))
+    inner = Context(ctx.packages, version, ctx.diagnostics, including, classic)
     name = node.child("name")
     static = node.child("static")
     return Included(

@@ -13,6 +13,7 @@ from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.sensors import read_sensor, read_sensors
+from cartwheel.description.sdf.zero_axis import accept_zero_axis
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
 from cartwheel.similar_names import meant, suggestion
@@ -269,16 +270,15 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
     xyz_node = node.child("xyz")
     xyz: Vec3 = xyz_node.vec3() if xyz_node is not None else (0.0, 0.0, 1.0)
     length = math.sqrt(sum(c * c for c in xyz))
+    undirected = False
     if length < 1e-9:
-        raise node.fail(
-            f'joint "{joint}": the axis 0 0 0 has no direction',
-            code=robot.AXIS_ZERO,
-            values={"joint": joint},
-        )
+        accept_zero_axis(node, joint, f'joint "{joint}": the axis 0 0 0 has no direction', ctx)
+        xyz, length = rotate(quat_conjugate(in_model.orientation), (1.0, 0.0, 0.0)), 1.0
+        undirected = True
     xyz = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
     expressed_in = (xyz_node.get("expressed_in") or "").strip() if xyz_node is not None else ""
     in_model_frame = _is_in_model_frame(node, joint, ctx)
-    if in_model_frame or expressed_in:
+    if (in_model_frame or expressed_in) and not undirected:
         frame = frames.pose(expressed_in, node.origin) if expressed_in else Pose()
         xyz = rotate(quat_conjugate(in_model.orientation), rotate(frame.orientation, xyz))
     lower = _limit(node.optional_number_at("limit/lower", infinite=True))

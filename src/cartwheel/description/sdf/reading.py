@@ -11,10 +11,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.codes import files, tags
+from cartwheel.description.elements.simulator import is_classic
 from cartwheel.description.elements.xml import Node, unread
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.sdf.context import MODERN, NEWEST, Context, read_version
+from cartwheel.description.sdf.context import MODERN, NEWEST, NOT_CLASSIC, Context, read_version
 from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.model import read_model
 from cartwheel.description.sdf.oldest import as_modern
@@ -44,7 +45,9 @@ def read_sdf(
             f"expected <sdf>, but the file begins with <{root.tag}>", code=files.NOT_A_DESCRIPTION
         )
     including = () if packages.file is None else (Path(packages.file).resolve(),)
-    ctx = Context(packages, read_version(root), including=including)
+    version = read_version(root)
+    classic = version < NOT_CLASSIC and is_classic(root)
+    ctx = Context(packages, version, including=including, classic=classic)
     if ctx.version < MODERN:
         root = as_modern(root)
     if ctx.version > NEWEST:

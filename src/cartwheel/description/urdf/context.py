@@ -18,8 +18,6 @@ class UrdfContext(Context):
     version: Version = (1, 9)
     materials: dict[str, Material] = field(default_factory=dict)
     """Materials defined for the whole robot."""
-    classic: bool = False
-    """Whether the robot has plugins for Gazebo Classic, and none for gz-sim."""
     undirected: set[str] = field(default_factory=set)
     """Joints whose axis has length 0."""
 

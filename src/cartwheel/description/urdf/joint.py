@@ -11,6 +11,7 @@ from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import WITHOUT_POSITION, Axis, Joint, JointType, Mimic, SoftLimits
 from cartwheel.description.sdf.joint import usable_limits
+from cartwheel.description.sdf.zero_axis import accept_zero_axis
 from cartwheel.description.urdf.context import UrdfContext, read_origin
 from cartwheel.errors import Value
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
@@ -91,10 +92,7 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
 def directed(
     joints: Sequence[Joint], poses: Mapping[str, Pose], undirected: Collection[str]
 ) -> list[Joint]:
-    """Joints in which an axis of length 0 is the x axis of the model, as in Gazebo Classic.
-
-    urdfdom and sdformat 9 pass such an axis on, and ODE's ``dJointSetHingeAxis`` normalises it in
-    the frame of the world to 1 0 0. sdformat 10 and later, which gz-sim uses, refuse it.
+    """Joints in which an axis of length 0 is the x axis of the model; see `accept_zero_axis`.
 
     Args:
         joints: The joints.
@@ -145,16 +143,7 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
     if length < 1e-6:
         assert stated is not None
         said = f'joint "{name}": the axis {stated.attributes.get("xyz")} has length 0'
-        if not ctx.classic:
-            raise stated.fail(said, code=robot.AXIS_ZERO, values={"joint": name})
-        ctx.warn(
-            robot.AXIS_ZERO,
-            f"{said}, for which Gazebo Classic uses the x axis of the world; gz-sim does not load "
-            "such a robot",
-            origin=stated.origin,
-            severity="warning",
-            values={"joint": name},
-        )
+        accept_zero_axis(stated, name, said, ctx)
         ctx.undirected.add(name)
         xyz, length = (1.0, 0.0, 0.0), 1.0
     unit: Vec3 = (xyz[0] / length, xyz[1] / length, xyz[2] / length)

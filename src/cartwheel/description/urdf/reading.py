@@ -6,12 +6,12 @@ the tree of joints. This module combines them; each has its own module.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from cartwheel.codes import files, robot
 from cartwheel.codes import tags as tag_codes
+from cartwheel.description.elements.simulator import is_classic
 from cartwheel.description.elements.xml import Node, to_element, unread
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.inertia import LIGHTEST
@@ -31,10 +31,6 @@ from cartwheel.description.urdf.merged_gravity import merge_gravity
 from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
-
-_CLASSIC = re.compile(r"^(?:lib)?gazebo_")
-_GZ = re.compile(r"^(?:lib)?(?:gz|ign|ignition)[-_]")
-"""Beginnings of the names of plugins for Gazebo Classic and for gz-sim."""
 
 
 def read_urdf(
@@ -76,7 +72,7 @@ def read_urdf(
     joint_nodes = root.all("joint")
     _check_unique("joint", joint_nodes)
 
-    ctx.classic = _is_classic(root)
+    ctx.classic = is_classic(root)
     parts = [read_link(node, ctx) for node in link_nodes]
     names = [part.link.name for part in parts]
     known = frozenset(names)
@@ -129,26 +125,6 @@ def read_urdf(
         text=text,
         origin=root.origin,
     )
-
-
-def _is_classic(root: Node) -> bool:
-    """Whether a robot has plugins for Gazebo Classic, and none for gz-sim."""
-    files = [
-        plugin.attributes.get("filename", "")
-        for tag in root.children
-        if tag.tag == "gazebo"
-        for plugin in _plugins(tag)
-    ]
-    return any(map(_CLASSIC.search, files)) and not any(map(_GZ.search, files))
-
-
-def _plugins(tag: Node) -> Iterator[Node]:
-    """The plugins in a ``<gazebo>``, and those of the sensors in it."""
-    for each in tag.children:
-        if each.tag == "plugin":
-            yield each
-        elif each.tag == "sensor":
-            yield from (part for part in each.children if part.tag == "plugin")
 
 
 def _name(root: Node) -> str:

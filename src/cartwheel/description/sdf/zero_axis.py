@@ -1,0 +1,34 @@
+"""Joints whose axis has length 0, which only Gazebo Classic loads."""
+
+from __future__ import annotations
+
+from cartwheel.codes import robot
+from cartwheel.description.elements.xml import Node
+from cartwheel.description.sdf.context import Context
+
+
+def accept_zero_axis(node: Node, joint: str, said: str, ctx: Context) -> None:
+    """Warns about an axis of length 0, for which the x axis of the world is used.
+
+    urdfdom and sdformat 9 pass such an axis on, and ODE's ``dJointSetHingeAxis`` normalises it in
+    the frame of the world to 1 0 0. sdformat 10 and later, which gz-sim uses, refuse it.
+
+    Args:
+        node: The ``<axis>``.
+        joint: The name of the joint.
+        said: What is wrong, as a sentence without a full stop.
+        ctx: Receives the warning.
+
+    Raises:
+        DescriptionError: The description is not for Gazebo Classic.
+    """
+    if not ctx.classic:
+        raise node.fail(said, code=robot.AXIS_ZERO, values={"joint": joint})
+    ctx.warn(
+        robot.AXIS_ZERO,
+        f"{said}, for which Gazebo Classic uses the x axis of the world; gz-sim does not load such "
+        "a robot",
+        origin=node.origin,
+        severity="warning",
+        values={"joint": joint},
+    )
