@@ -11,6 +11,10 @@ from cartwheel.dialects.ros_only import _REPLACEMENTS
 
 CATKIN = "<buildtool_depend>catkin</buildtool_depend>"
 AMENT = "<export><build_type>ament_cmake</build_type></export>"
+BOTH = (
+    '<depend condition="$ROS_VERSION == 1">roscpp</depend>'
+    '<depend condition="$ROS_VERSION == 2">rclcpp</depend>'
+)
 BODY = (
     '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
     '<collision><geometry><box size="1 1 0.1"/></geometry></collision>'
@@ -47,6 +51,11 @@ def found(path):
         ("libgazebo_ros_control.so", "<buildtool_depend>ament_cmake</buildtool_depend>", 2.0),
         ("libgazebo_ros_control.so", CATKIN, None),
         ("libgazebo_ros_control.so", CATKIN + AMENT, None),
+        ("libgazebo_ros_control.so", f"{CATKIN}{AMENT}<depend>rclcpp</depend>", 2.0),
+        ("libgazebo_ros2_control.so", f"{CATKIN}{AMENT}<run_depend>rospy</run_depend>", 1.0),
+        ("libgazebo_ros_control.so", f"{CATKIN}{AMENT}{BOTH}", None),
+        ("libgazebo_ros2_control.so", f"{CATKIN}{AMENT}{BOTH}", None),
+        ("libgazebo_ros_control.so", f"{CATKIN}<depend>rclcpp</depend>", None),
         ("libgazebo_ros_control.so", f"<!-- {CATKIN} -->", None),
         ("libgazebo_ros_control.so", f"{CATKIN}<!-- {AMENT} -->", None),
         ("libgazebo_ros2_control.so", CATKIN, 1.0),
@@ -78,6 +87,15 @@ def test_a_manager_of_the_other_version_is_why_no_controller_starts(tmp_path):
     assert CONTROLLERS_NOT_FOUND not in codes
     (fault,) = [each for each in try_robot(path, standing=0.5).faults if each.test == "controller"]
     assert (fault.code, fault.source) == (PLUGIN_OF_OTHER_ROS, "file")
+
+
+def test_a_manager_of_the_other_version_comes_before_missing_transmissions(tmp_path):
+    path = robot(tmp_path, "libgazebo_ros_control.so", AMENT)
+    text = path.read_text()
+    start, end = text.index("<transmission"), text.index("</transmission>")
+    path.write_text(text[:start] + text[end + len("</transmission>") :])
+    (fault,) = [each for each in try_robot(path, standing=0.5).faults if each.test == "controller"]
+    assert fault.code is PLUGIN_OF_OTHER_ROS
 
 
 def test_plugins_of_one_version_are_simulated_or_unknown():

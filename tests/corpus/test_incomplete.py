@@ -154,3 +154,37 @@ def test_what_is_missing_in_a_model_that_was_not_found_is_explained_by_its_inclu
     assert {each.test for each in faults} == {"plugin", "stand"}
     assert all((each.code is FILE_MISSING) is explained for each in faults), faults
     assert all(each.source == "file" for each in faults)
+
+
+SPAWNED = (
+    '<launch><param name="robot_description" command="xacro $(find robot)/robot.urdf.xacro"/>'
+    '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-param robot_description"/></launch>'
+)
+BESIDE = '<xacro:include filename="movers.xacro"/>'
+
+
+@pytest.mark.parametrize("built", [False, True])
+@pytest.mark.parametrize("spawned", [False, True])
+def test_what_moves_a_robot_that_is_started_in_gazebo_may_be_in_an_absent_file(
+    tmp_path, built, spawned
+):
+    """Without wheels, nothing shows whether the robot should move."""
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>")
+    if spawned:
+        (tmp_path / "robot.launch").write_text(SPAWNED)
+    if built:
+        (tmp_path / "movers.xacro.in").write_text("@MOVERS@")
+    path = expanded(tmp_path, BESIDE, f'<link name="base">{MASS}{COLLISION}</link>')
+    verdict = try_robot(path, standing=1.0)
+    found = [(each.test, each.code, each.source) for each in verdict.faults]
+    assert found == ([("plugin", INCLUDE_ABSENT, "unknown")] if spawned else [])
+    assert all(bool(each.reason.values["template"]) == built for each in verdict.faults)
+
+
+@pytest.mark.parametrize("built", [False, True])
+def test_what_turns_wheels_may_be_in_a_file_that_a_build_makes(tmp_path, built):
+    if built:
+        (tmp_path / "movers.xacro.in").write_text("@MOVERS@")
+    (fault,) = try_robot(expanded(tmp_path, BESIDE, cart()), standing=1.0).faults
+    assert (fault.test, fault.code) == ("plugin", INCLUDE_ABSENT)
+    assert fault.source == ("unknown" if built else "file")

@@ -4,7 +4,11 @@ import pytest
 from tests.corpus.carts import cart, plugin, written
 from tests.corpus.test_rivals import MANAGER, managed
 
-from cartwheel.codes.devices import PLUGIN_UNKNOWN
+from cartwheel.codes.devices import (
+    CONTROLLERS_NOT_FOUND,
+    HARDWARE_NOT_SIMULATED,
+    PLUGIN_UNKNOWN,
+)
 from cartwheel.codes.tags import TAG_IGNORED
 from cartwheel.corpus import try_robot
 
@@ -75,6 +79,19 @@ def test_unsupported_hardware_may_be_what_moves_an_arm(tmp_path):
     verdict = try_robot(written(tmp_path, box, arm), standing=1.0)
     assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
     assert verdict.outcome == "unknown"
+
+
+@pytest.mark.parametrize("listed", [False, True])
+def test_unsupported_hardware_may_move_a_robot_without_transmissions(tmp_path, listed):
+    """With transmissions, it needs controllers, of which there are none."""
+    kind = "><robotSimType>my_robot/FlyingHardware</robotSimType></plugin></gazebo>"
+    parts = managed("Effort").replace("/></gazebo>", kind)
+    if not listed:
+        start, end = parts.index("<transmission"), parts.rindex("</transmission>")
+        parts = parts[:start] + parts[end + len("</transmission>") :]
+    (fault,) = try_robot(written(tmp_path, cart(), parts), standing=1.0).faults
+    expected = (CONTROLLERS_NOT_FOUND, "file") if listed else (HARDWARE_NOT_SIMULATED, "unknown")
+    assert (fault.code, fault.source) == expected
 
 
 def test_controllers_that_are_only_loaded_are_not_why_unsupported_hardware_does_not_move(tmp_path):

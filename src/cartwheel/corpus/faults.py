@@ -71,6 +71,8 @@ class Fault:
     """The topic, joint, plugin or controller; empty for the robot."""
     reason: Diagnostic | None = None
     """The diagnostic that explains the failure; None if the cause is unknown."""
+    sure: bool = True
+    """Whether the reason certainly explains the failure."""
 
     @property
     def code(self) -> Code | None:
@@ -79,8 +81,8 @@ class Fault:
 
     @property
     def source(self) -> Literal["file", "unknown"]:
-        """``file`` if the reason is a mistake in the robot's files."""
-        if self.reason is None or self.code in _OURS:
+        """``file`` if the reason is a mistake in the robot's files, and certain."""
+        if self.reason is None or not self.sure or self.code in _OURS:
             return "unknown"
         ours = {code.number for code in _OURS}
         return "unknown" if self.reason.values.get("cause") in ours else "file"

@@ -114,19 +114,21 @@ def missing_movers(
     if verdict.failure is not None and verdict.controllers:
         # The simulation stopped before the controllers were tested.
         return
-    wheels = any(joint.turns for joint in description.joints)
-    lost = coded(said, frozenset({files.INCLUDE_ABSENT}))
-    if lost is not None and wheels and not verdict.movers:
-        yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)
+    lost = None if verdict.movers else _lost_mover(verdict, description)
+    if lost is not None:
+        yield lost
     replaced = [
         each
         for each in said
         if each.code is devices.HARDWARE_NOT_SIMULATED and "hardware" in each.values
     ]
-    # Such hardware may move a robot without joints, such as a quadrotor. Joints that have no
-    # controllers do not move with any hardware.
-    moves = any(joint.type != "fixed" for joint in description.joints)
-    stopped = replaced if verdict.controller_files or not moves else []
+    # Such hardware may move a robot without transmissions, such as a quadrotor. Joints that have
+    # transmissions, but no controllers, do not move with any hardware.
+    hardware = (*description.transmissions, *description.ros2_control)
+    listed = any(True for each in hardware for _ in each.find_all("joint"))
+    moves = listed and any(joint.type != "fixed" for joint in description.joints)
+    stopped = replaced if verdict.controller_files or verdict.spawned or not moves else []
+    codes = _CONTROL - {devices.CONTROL_WITHOUT_JOINTS} if replaced else _CONTROL
     causes = (devices.CONTROLLER_UNDEFINED, devices.CONTROLLER_ONLY_LOADED)
     undefined = [
         each
@@ -136,11 +138,13 @@ def missing_movers(
     for each in undefined:
         yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
     for tag in managers(description, jointless=bool(replaced)):
-        reason = most_severe(stopped) or most_severe(
-            each for each in said if each.code in _CONTROL and _concerns(each, tag)
+        # Of the other version, Gazebo does not load the manager, whatever else is wrong.
+        reason = other_ros(description, tag) or most_severe(stopped)
+        reason = reason or most_severe(
+            each for each in said if each.code in codes and _concerns(each, tag)
         )
         if reason is None and not undefined and unread is None:
-            reason = other_ros(description, tag) or _uncommanded(verdict, tag)
+            reason = _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 
@@ -162,6 +166,23 @@ def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:
     }
     held = verdict.stand is not None and verdict.stand.fixed
     return movable <= verdict.driven and (held or bool(verdict.drives or verdict.flights))
+
+
+def _lost_mover(verdict: Verdict, description: RobotDescription) -> Fault | None:
+    """The absent include that may contain what moves a robot that nothing else moves.
+
+    A robot without wheels need not move, unless a launch file starts it in Gazebo. Then it is
+    unknown whether the include would move it, as it is if a build makes the file.
+    """
+    absent = [each for each in verdict.diagnostics if each.code is files.INCLUDE_ABSENT]
+    made = [each for each in absent if each.values.get("template")]
+    lost = most_severe(made or absent)
+    wheels = any(joint.turns for joint in description.joints)
+    started = verdict.launch is not None and verdict.launch.simulated
+    if lost is None or not (wheels or started):
+        return None
+    subject = str(lost.values.get("file", ""))
+    return Fault(test="plugin", subject=subject, reason=lost, sure=wheels and not made)
 
 
 def _is_misplaced(each: Diagnostic) -> bool:

@@ -14,6 +14,9 @@ _MOST = 65536
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
 _ROS1 = re.compile(rb"<(?:buildtool_depend|build_type)\b[^<>]*>\s*catkin\b")
 _ROS2 = re.compile(rb"<(?:buildtool_depend|build_type)\b[^<>]*>\s*ament_\w")
+_LIBRARY = rb"<(?:depend|build_depend|exec_depend|run_depend)\b[^<>]*>\s*(?:%b)\s*<"
+_LIBRARY1 = re.compile(_LIBRARY % rb"roscpp|rospy")
+_LIBRARY2 = re.compile(_LIBRARY % rb"rclcpp|rclpy")
 
 
 def ros_version(file: Path) -> Literal[1, 2] | None:
@@ -42,6 +45,9 @@ def _stated(manifest: Path, _changed: int) -> Literal[1, 2] | None:
     with manifest.open("rb") as file:
         text = _COMMENT.sub(b"", file.read(_MOST))
     first, second = bool(_ROS1.search(text)), bool(_ROS2.search(text))
+    if first and second:
+        # One of the two may be a leftover, which the libraries of a package for both are not.
+        first, second = bool(_LIBRARY1.search(text)), bool(_LIBRARY2.search(text))
     if first == second:
         return None
     return 1 if first else 2

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from cartwheel.codes import files as codes
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.files.other_places import FIND
+from cartwheel.description.files.package_folders import is_file
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.losses import loss
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
@@ -19,6 +21,8 @@ from cartwheel.similar_names import suggestion
 
 _WORLD = "world"
 """The link that represents the world."""
+_TEMPLATE = ".in"
+"""End of the names of the files from which CMake makes others."""
 _PARENTS = ("parent", "parent_link", "attach_to", "connected_to", "parent_name")
 """Names of the macro parameter with the link to which a part is attached."""
 
@@ -86,6 +90,11 @@ class Absences:
                 name if package else path, origin, what="included file", without=active
             )
         except DescriptionError as error:
+            template = f"{path}{_TEMPLATE}"
+            made = is_file(Path(template))
+            if made:
+                name_in = Path(template).name
+                error.hint = f'Build its package: the build makes the file from "{name_in}".'
             self._first = self._first or error
             self.diagnostics.append(
                 loss(
@@ -93,7 +102,7 @@ class Absences:
                     "the include is left out",
                     of="include",
                     code=codes.INCLUDE_ABSENT,
-                    values={"file": name, "package": package},
+                    values={"file": name, "package": package, "template": template if made else ""},
                 )
             )
 
