@@ -76,3 +76,45 @@ def test_a_slide_between_equal_limits_is_held(tmp_path, upper):
     path = tmp_path / "slide.urdf"
     path.write_text(robot(slide, GZ.format(p=5.0, i=0.0)))
     assert CONTROLLER_GAIN_TOO_LOW not in [each.code for each in check(path).findings]
+
+
+@pytest.mark.parametrize(
+    ("p", "pose", "reported"),
+    [
+        # Its weight of 2 kg is 0.5 m above the axis: 9.8 N m/rad.
+        (5.0, ("0 -1.5708 0", 3), True),
+        (5.0, ("0 -1.0 0", 3), True),
+        (40.0, ("0 -1.5708 0", 3), False),
+        # It starts near the horizontal, or hangs.
+        (5.0, ("0 0.2 0", 3), False),
+        (5.0, ("0 1.5708 0", 3), False),
+        # Gravity does not turn it about an upright axis.
+        (5.0, ("1.5708 0 0", 3), False),
+        # It cannot reach the upright position.
+        (5.0, ("0 -1.0 0", 0.3), False),
+    ],
+)
+@pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
+def test_a_gain_that_does_not_hold_a_load_up_is_reported(tmp_path, pose, p, reported, gz):
+    """Gravity's torque C sin(a) grows faster with the angle than p a if p is below C."""
+    turned, limits = pose
+    limit = f'lower="{-limits}" upper="{limits}" effort="100" velocity="10"'
+    arm = beam("beam", "world", limit=limit).replace(
+        '<origin xyz="0 0 1"/>', f'<origin xyz="0 0 1" rpy="{turned}"/>', 1
+    )
+    arm = arm.replace("</joint>", '<dynamics damping="2"/></joint>', 1)
+    path = tmp_path / "arm.urdf"
+    path.write_text(
+        robot(arm + transmission("beam_joint", "Effort"), GZ.format(p=p, i=0.0) if gz else ROS1)
+    )
+    (tmp_path / "move.yaml").write_text(FILE.format(p=p, i=0.0))
+    files = () if gz else (tmp_path / "move.yaml",)
+    findings = check(path, controller_files=files).findings
+    found = [each for each in findings if each.code is CONTROLLER_GAIN_TOO_LOW]
+    assert [each.values["joint"] for each in found] == ["beam_joint"] * reported
+    assert not found or found[0].values["upright"] == pytest.approx(2.0 * 9.8 * 0.5)
+    if limits < 1.0:
+        # It stays at a limit.
+        return
+    codes = [each.code for each in try_robot(path, standing=1.0, controllers=files).faults]
+    assert codes == [CONTROLLER_GAIN_TOO_LOW] * reported

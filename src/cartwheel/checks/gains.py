@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
+from cartwheel.checks.resting import starting_poses
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import wheel_axis
+from cartwheel.checks.wheels import wheel_axis, wheel_place
 from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW
+from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import Joint
 from cartwheel.errors import Diagnostic, Origin
 
@@ -15,6 +21,8 @@ ANGLE, LENGTH = 0.2, 0.02
 """Distance from the target at which a controller should move a joint, rad and m."""
 _GRAVITY = 9.8
 """m/s²."""
+_UPRIGHT = math.pi / 3
+"""Angle from the upright position within which a joint starts that has to hold its load up, rad."""
 SLOW = 5.0
 """Time after which an integral counts as too slow, s."""
 
@@ -34,6 +42,47 @@ def gain_too_low(
     """
     yield from _is_stuck(joint, gain, origin, **place)
     yield from _cannot_hold(robot, joint, gain, origin, **place)
+    yield from _falls_over(robot, joint, gain, origin, **place)
+
+
+def upright_stiffness(robot: Robot, joint: Joint) -> float:
+    """The gain below which gravity turns a joint over that starts with its load above it, N m/rad.
+
+    At an angle a from the upright position, gravity's torque is C sin(a), where C is the weight on
+    the joint times the distance of its centre of mass from the axis, both perpendicular to the
+    axis. It grows faster with the angle than the torque of a proportional gain below C, so that
+    the joint has no stable position near the upright one. The other joints are at 0.
+
+    Args:
+        robot: The robot.
+        joint: One of its joints.
+
+    Returns:
+        0 if the joint does not turn, if it starts further than 60° from the upright position, or if
+        its limits exclude this position.
+    """
+    turns = joint.type in ("revolute", "continuous")
+    if not turns or joint.child not in robot.placed or joint.mimic is not None:
+        return 0.0
+    poses = starting_poses(robot)
+    carried = _links_on(robot, joint)
+    links = tuple(each for each in robot.description.links if each.name in carried)
+    center = center_of_mass(replace(robot.description, links=links), poses)
+    if center is None:
+        return 0.0
+    axis = wheel_axis(robot, joint)
+    arm = np.array(center) - np.array(wheel_place(robot, joint).position)
+    arm, up = (each - (each @ axis) * axis for each in (arm, np.array([0.0, 0.0, 1.0])))
+    left = math.atan2(float(axis @ np.cross(arm, up)), float(arm @ up))
+    lower, upper = joint.axis.lower, joint.axis.upper
+    limited = joint.type == "revolute" and lower is not None and upper is not None
+    if limited and lower is not None and upper is not None:
+        start = min(max(0.0, lower), upper)
+        if upper <= lower or not lower <= start + left <= upper:
+            return 0.0
+    if abs(left) > _UPRIGHT:
+        return 0.0
+    return float(_GRAVITY * _mass_on(robot, joint) * np.linalg.norm(arm) * np.linalg.norm(up))
 
 
 def span(joint: Joint) -> float | None:
@@ -86,19 +135,44 @@ def _cannot_hold(
     )
 
 
+def _falls_over(
+    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
+) -> Iterator[Diagnostic]:
+    """The finding that a gain does not hold up what a joint that turns carries."""
+    least = upright_stiffness(robot, joint) if gain > 0.0 else 0.0
+    if gain >= least:
+        return
+    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
+        f"the proportional gain of {gain:g} N m/rad does not hold up the load of joint "
+        f'"{joint.name}": near the upright position, gravity turns it over with {least:.3g} N m '
+        "per rad",
+        values={"joint": joint.name, "gain": gain, "upright": least},
+        origin=origin,
+        hint=f"Use a gain well above {least:.3g} N m/rad, or an integral gain.",
+        **place,
+    )
+
+
 def _mass_on(robot: Robot, joint: Joint) -> float:
     """Mass of what a joint carries, kg."""
-    below, total, left = robot.inbound, 0.0, [joint.child]
+    links = (robot.links.get(name) for name in _links_on(robot, joint))
+    return sum(
+        link.inertial.mass
+        for link in links
+        if link is not None and link.inertial is not None and link.gravity
+    )
+
+
+def _links_on(robot: Robot, joint: Joint) -> set[str]:
+    """Names of the links that a joint carries."""
+    below, left = robot.inbound, [joint.child]
     children: dict[str, list[str]] = {}
     for child, holder in below.items():
         children.setdefault(holder.parent, []).append(child)
     seen = set(left)
     while left:
         name = left.pop()
-        link = robot.links.get(name)
-        if link is not None and link.inertial is not None and link.gravity:
-            total += link.inertial.mass
         more = [each for each in children.get(name, []) if each not in seen]
         seen.update(more)
         left += more
-    return total
+    return seen
