@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from cartwheel.checks.rules.wheels.wheel_separation import compensation
 from cartwheel.codes import robot, running
+from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW
 from cartwheel.corpus.faults import most_severe
 from cartwheel.corpus.movers import managers, reports
 from cartwheel.description.model import PluginTag, RobotDescription
@@ -70,6 +71,8 @@ def cause_of_drive(
     """The mistake that explains why a base moves at a multiple of the commanded velocity."""
     codes = _TURNING if turning else _SIDEWAYS if sideways else _DRIVING
     cause = _cause(found, ratio, codes, turning=turning, arc=arc)
+    if cause is None and turning:
+        return _too_weak(found, ratio)
     if cause is not None and cause.code is robot.SKID_STEERING and ratio > 1.0:
         # Wheels that slide slow the robot down, so it is the stated separation that is wrong.
         wrong = (each for each in found if each.code is robot.WHEEL_SEPARATION_MISMATCH)
@@ -77,6 +80,18 @@ def cause_of_drive(
     if cause is None or cause.code is not robot.SKID_STEERING or not 0.0 < ratio < 1.0:
         return cause
     return _as_measured(cause, ratio)
+
+
+def _too_weak(found: Sequence[Diagnostic], ratio: float) -> Diagnostic | None:
+    """The finding that gains are too low for wheels that have to slide, which turn too slowly."""
+    slides = any(
+        each.code is robot.SKID_STEERING
+        and isinstance(predicted := each.values.get("ratio"), float)
+        and 0.0 <= ratio < predicted
+        for each in found
+    )
+    weak = (each for each in found if each.code is CONTROLLER_GAIN_TOO_LOW)
+    return next((each for each in weak if slides and "sliding" in each.values), None)
 
 
 def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:

@@ -7,8 +7,11 @@ import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from cartwheel.checks.gains import gain_too_low
 from cartwheel.checks.robot import Robot
+from cartwheel.checks.wheels import axle_of, wheel_links, wheel_radius, wheel_tread
 from cartwheel.codes import devices
 from cartwheel.corpus import commands, motion
 from cartwheel.description.model import RobotDescription
@@ -23,6 +26,8 @@ from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.tags import read
 from cartwheel.errors import Diagnostic, Origin, PluginError
 
+_GRAVITY = 9.8
+"""m/s²."""
 _COMPLETE = 50.0
 """Exponent of a factor that is as good as infinite."""
 
@@ -118,6 +123,50 @@ def undamped(
                     values={"joint": joint, "controller": controller.name, "p": gains[0]},
                     hint="Set a derivative gain, or the damping of the joint.",
                 )
+
+
+def too_weak_to_turn(
+    robot: Robot, started: Sequence[Controller], turn: float
+) -> Iterator[Diagnostic]:
+    """Bases whose wheels cannot slide in a turn, because the gains of their velocities are too low.
+
+    A proportional gain turns a wheel with at most the gain times the commanded speed. A wheel with
+    radius r that carries the load N slides from the torque mu N r.
+
+    Args:
+        robot: The robot, with the wheels of its controllers.
+        started: The controllers that run.
+        turn: The commanded turn rate, rad/s.
+    """
+    gains = _hardware_gains(started)
+    for left, right in robot.controlled:
+        joints = [robot.joints[name] for name in (*left, *right)]
+        radii = [wheel_radius(robot, joint) for joint in joints]
+        links = [name for joint in joints for name in wheel_links(robot, joint)]
+        if not gains.keys() >= {*left, *right} or not robot.placed.issuperset(links):
+            continue
+        radius = min((each for each in radii if each), default=0.0)
+        grips = [each.surface.mu1 for name in links for each in robot.links[name].collisions]
+        if not radius or not all(radii) or not grips:
+            continue
+        axle = axle_of(robot, left, right, beside=True)
+        first, second = (
+            np.mean([wheel_tread(robot, robot.joints[name]) for name in side], axis=0)
+            for side in (left, right)
+        )
+        speed = turn * abs(float((first - second) @ axle)) / 2 / radius
+        gain = max(gains[joint.name] for joint in joints)
+        mu = min(1.0 if each is None else each for each in grips)
+        friction = mu * _GRAVITY * robot.description.mass / len(joints) * radius
+        if gain * speed < friction:
+            yield devices.CONTROLLER_GAIN_TOO_LOW.diagnostic(
+                f"the velocity gain of {gain:.3g} N m s/rad turns the wheels with at most "
+                f"{gain * speed:.3g} N m at the commanded {speed:.3g} rad/s, but they slide in a "
+                f"turn only from {friction:.3g} N m",
+                origin=robot.description.origin,
+                values={"joints": (*left, *right), "gain": gain, "sliding": friction},
+                hint=f"Use a gain well above {friction / speed:.3g} N m s/rad." if speed else "",
+            )
 
 
 def _position_gains(

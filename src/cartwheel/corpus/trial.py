@@ -16,7 +16,7 @@ from cartwheel.corpus.diagnosis import faults, has_devices
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flying.flights import flights
 from cartwheel.corpus.flying.thrusters import bursts, thrusts
-from cartwheel.corpus.gains import too_weak, undamped, weak_gains
+from cartwheel.corpus.gains import too_weak, too_weak_to_turn, undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.listening import LISTENING, controllers_of, idle, listened
 from cartwheel.corpus.movers import STEERED, movers
@@ -302,7 +302,9 @@ def _driven(
     # An arm in unstable balance falls only while the robot drives.
     seen = [*dragging(world, model, body, started), *seen]
     found = {(each.values["link"], each.values["joint"]): each for each in reversed(seen)}
-    apart = drives_apart(body, drives)
+    turns = min((abs(each.commanded_turn) for each in drives), default=0.0)
+    weak = too_weak_to_turn(body, started, turns)
+    apart = [*drives_apart(body, drives), *weak]
     return replace(verdict, observed=(*verdict.observed, *reversed(found.values()), *apart))
 
 

@@ -1,0 +1,49 @@
+"""Wheels that have to slide in a turn, with gains too low for that."""
+
+import pytest
+from tests.corpus.carts import written
+
+from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW
+from cartwheel.codes.robot import SKID_STEERING
+from cartwheel.corpus import try_robot
+
+BASE = (
+    '<link name="base"><inertial><mass value="20"/><inertia ixx="0.5" iyy="0.5" izz="0.5"/>'
+    '</inertial><collision><geometry><box size="0.4 0.3 0.05"/></geometry></collision></link>'
+)
+WHEEL = (
+    '<link name="{n}"><inertial><mass value="0.5"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-3"/>'
+    '</inertial><collision><geometry><cylinder radius="0.1" length="0.04"/></geometry></collision>'
+    '</link><joint name="{n}_joint" type="continuous"><parent link="base"/><child link="{n}"/>'
+    '<origin xyz="{x} {y} 0" rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint>'
+    '<transmission name="{n}"><type>transmission_interface/SimpleTransmission</type>'
+    '<joint name="{n}_joint"><hardwareInterface>hardware_interface/VelocityJointInterface'
+    '</hardwareInterface></joint><actuator name="m"/></transmission>'
+)
+MANAGER = '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
+CONTROLLER = """base:
+  type: diff_drive_controller/DiffDriveController
+  left_wheel: [fl_joint, rl_joint]
+  right_wheel: [fr_joint, rr_joint]
+  wheel_separation: 0.4
+  wheel_radius: 0.1
+gazebo_ros_control:
+  pid_gains:
+"""
+
+
+@pytest.mark.parametrize(
+    ("gain", "reason"), [(3.0, CONTROLLER_GAIN_TOO_LOW), (300.0, SKID_STEERING)]
+)
+def test_a_gain_too_low_for_wheels_to_slide_is_why_a_robot_turns_slowly(tmp_path, gain, reason):
+    """mu N r is 5.4 N m, and the wheels are commanded 0.8 rad/s: 2.4 N m, or 240 N m."""
+    places = {"fl": (0.2, 0.2), "rl": (-0.2, 0.2), "fr": (0.2, -0.2), "rr": (-0.2, -0.2)}
+    wheels = "".join(WHEEL.format(n=name, x=x, y=y) for name, (x, y) in places.items())
+    gains = "".join(f"    {name}_joint: {{p: {gain}, i: 0.0, d: 0.0}}\n" for name in places)
+    (tmp_path / "base.yaml").write_text(CONTROLLER + gains)
+    path = written(tmp_path, BASE, wheels, MANAGER)
+    verdict = try_robot(path, standing=1.0, controllers=[tmp_path / "base.yaml"])
+    (fault,) = [each for each in verdict.faults if each.test == "turn"]
+    assert (fault.code, fault.source) == (reason, "file")
+    if reason is CONTROLLER_GAIN_TOO_LOW:
+        assert fault.reason.values["sliding"] == pytest.approx(9.8 * 22 / 4 * 0.1)
