@@ -304,7 +304,7 @@ HARDWARE_WITHOUT_PLUGIN = Code(
     "CW490",
     "hardware-without-plugin",
     "warning",
-    "no Gazebo plugin runs the hardware of <ros2_control>",
+    "no Gazebo plugin runs the hardware of <ros2_control> or of transmissions",
 )
 DERIVATIVE_GAIN_TOO_HIGH = Code(
     "CW491",

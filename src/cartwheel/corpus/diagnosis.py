@@ -10,7 +10,7 @@ from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, drives_on, flywheel, is_free
 from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
-from cartwheel.corpus.missing_movers import missing_movers, unmanaged
+from cartwheel.corpus.missing_movers import missing_movers, unmanaged, unmanaged_transmissions
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -92,6 +92,7 @@ def _faults(
         for fault in reversed([*missing_movers(verdict, description, held=held)])
     }
     missing |= dict(unmanaged(verdict, description, findings))
+    missing |= {each.subject: each for each in unmanaged_transmissions(verdict, description)}
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights

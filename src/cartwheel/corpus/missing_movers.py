@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
 from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.codes import devices, files, running
+from cartwheel.corpus.fall_causes import LEFT_OUT
 from cartwheel.corpus.faults import Fault, coded, most_severe
 from cartwheel.corpus.movers import (
     ignored_movers,
@@ -15,8 +17,9 @@ from cartwheel.corpus.movers import (
     moving_plugins,
 )
 from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.model import PluginTag, RobotDescription
-from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros_only import other_ros, other_tags
 from cartwheel.errors import Diagnostic
 
@@ -33,6 +36,8 @@ _CONTROL = frozenset(
     }
 )
 """Reasons why no controller runs."""
+_STATES = "joint_state"
+"""Part of the names of controllers that only publish."""
 _BROADCASTER = "Broadcaster"
 """End of the types of ROS 2's controllers that command nothing."""
 _ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
@@ -51,6 +56,41 @@ def unmanaged(
         if each.code is devices.HARDWARE_WITHOUT_PLUGIN:
             name = str(each.values["name"])
             yield name, Fault(test="controller", subject=name, reason=each)
+
+
+def unmanaged_transmissions(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
+    """Transmissions of a robot that a launch file starts in Gazebo with controllers, although no
+    plugin runs them.
+    """
+    use = verdict.launch
+    movable = {joint.name for joint in description.joints if joint.type != "fixed"}
+    listed = [
+        each
+        for each in description.transmissions
+        if any((one.attribute("name") or "").strip() in movable for one in each.find_all("joint"))
+    ]
+    if (
+        verdict.movers
+        or use is None
+        or not use.simulated
+        or all(_STATES in name for name in use.spawned)
+        or not listed
+        or description.ros2_control
+        or ros_version(Path(description.origin.file)) == 2
+        or any("control" in short_name(tag.filename) for tag in description.plugins)
+        or coded(description.diagnostics, LEFT_OUT) is not None
+    ):
+        return
+    names = ", ".join(f'"{name}"' for name in use.spawned)
+    file = f"lib{ROS_CONTROL}.so"
+    reason = devices.HARDWARE_WITHOUT_PLUGIN.diagnostic(
+        f'"{use.file.name}" starts the controllers {names}, but the description does not contain '
+        f'the plugin "{file}", which runs them, so no controller starts',
+        origin=listed[0].origin,
+        values={"hardware": "transmission", "plugin": file, "name": use.spawned[0]},
+        hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
+    )
+    yield Fault(test="controller", subject=use.spawned[0], reason=reason)
 
 
 def missing_movers(
