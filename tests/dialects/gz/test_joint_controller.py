@@ -59,6 +59,29 @@ def test_the_pid_s_force_is_bounded(make):
     assert velocity == pytest.approx(2 / INERTIA * 0.5, rel=0.03)
 
 
+@pytest.mark.parametrize("gain", [1e4, 2e5, 1e7])
+def test_a_high_gain_without_damping_does_not_diverge(make, gain):
+    """With an angular frequency of 2/h or more, the force of the position before each step would
+    make the oscillation grow."""
+    gains = f"<p_gain>{gain}</p_gain><i_gain>0</i_gain><d_gain>0</d_gain><cmd_max>1e9</cmd_max>"
+    bounds = "<cmd_min>-1e9</cmd_min>"
+    plugin = controller("joint-position-controller", gains + bounds)
+    commands = [(POSITION, 0.5)]
+    for seconds in (0.005, 0.05, 0.1):
+        assert run(make, plugin, seconds, commands)[0] < 0.9
+    position, velocity = run(make, plugin, 2.0, commands)
+    assert position == pytest.approx(0.5, abs=0.01)
+    assert velocity == pytest.approx(0.0, abs=0.01)
+
+
+@pytest.mark.parametrize("gain", [150.0, 1e3, 1e6])
+def test_a_high_gain_of_a_velocity_does_not_overshoot(make, gain):
+    tags = f"<use_force_commands>true</use_force_commands><p_gain>{gain}</p_gain>"
+    plugin = controller("joint-controller", tags + "<i_gain>0</i_gain>")
+    velocities = [run(make, plugin, seconds, [(VELOCITY, 1.0)])[1] for seconds in (0.05, 1.0)]
+    assert velocities == pytest.approx([1.0, 1.0], abs=0.02)
+
+
 def test_an_integral_bears_a_load(make):
     # The offset pulls with 5 N m; alone, the proportional part would give way by 0.1 rad.
     gains = "<p_gain>50</p_gain><i_gain>100</i_gain><d_gain>14</d_gain><i_max>10</i_max>"

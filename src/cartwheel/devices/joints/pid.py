@@ -264,6 +264,59 @@ class Pid:
         effort: float = plain_effort(self.gains, error, self._integral)
         return effort
 
+    def position_command(
+        self, error: float, velocity: float, seconds: float, step: float, lightness: float
+    ) -> DampedEffort:
+        """Returns the effort for a position error, in which the output limits leave out damping.
+
+        Args:
+            error: Target minus position, rad or m.
+            velocity: Velocity of the joint, rad/s or m/s.
+            seconds: Time since the last call, s.
+            step: Time for which the effort acts, s.
+            lightness: Acceleration of the joint per effort; see `position_effort`.
+        """
+        effort, gains = self.effort(error, seconds), self.gains
+        if gains.p * step * step * lightness <= _STIFF:
+            return DampedEffort(effort, gains.d)
+        return self._after(error, gains.d + gains.p * step, velocity, step * lightness)
+
+    def velocity_command(
+        self, error: float, velocity: float, seconds: float, step: float, lightness: float
+    ) -> DampedEffort:
+        """Returns the effort for a velocity error.
+
+        If the joint is light, the proportional term acts on the velocity after the step. With that
+        before the step, the joint would overshoot its target in each step.
+
+        Args:
+            error: Target minus velocity, rad/s or m/s.
+            velocity: Velocity of the joint, rad/s or m/s.
+            seconds: Time since the last call, s.
+            step: Time for which the effort acts, s.
+            lightness: Acceleration of the joint per effort.
+        """
+        effort, gains = self.effort(error, seconds), self.gains
+        if gains.p * step * lightness <= 1.0:
+            return DampedEffort(effort)
+        command = self._after(error, gains.p, 0.0, step * lightness)
+        return DampedEffort(command.effort + command.damping * velocity, command.damping)
+
+    def _after(self, error: float, damping: float, velocity: float, gain: float) -> DampedEffort:
+        """The effort with a damping that acts after the step; without it at the output limits.
+
+        Args:
+            error: The error, whose integral is stored.
+            damping: N m s/rad or N s/m.
+            velocity: Velocity before the step that the damping reduces, rad/s or m/s.
+            gain: Change of the velocity in the step per effort.
+        """
+        gains = self.gains
+        effort = gains.p * error + integral_term(gains, self._integral) + gains.offset
+        output = (effort - damping * velocity) / (1.0 + damping * gain)
+        limited = clamp(output, gains.u_min, gains.u_max)
+        return DampedEffort(effort, damping) if limited == output else DampedEffort(limited)
+
     def limited(self, command: DampedEffort, velocity: float) -> DampedEffort:
         """Applies the output limits to an effort at a velocity in rad/s or m/s."""
         if not self._is_limited:

@@ -119,9 +119,11 @@ class JointServos(Component):
                 servo.command_position(target, max_velocity=fastest)
             return
         seconds = self._elapsed.seconds(self.part.time_ns)
+        step = self.part.clock.step_ns * 1e-9
         for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
-            effort = pid.effort(target - joint.position, seconds)
-            servo.command_effort(effort, damping=pid.gains.d)
+            error = target - joint.position
+            command = pid.position_command(error, joint.velocity, seconds, step, joint.lightness)
+            servo.command_effort(*command)
 
     def _turn(self) -> None:
         if self._config.gains is None:
@@ -129,8 +131,12 @@ class JointServos(Component):
                 servo.command_velocity(clamp(self._target, -fastest, fastest))
             return
         seconds = self._elapsed.seconds(self.part.time_ns)
+        step = self.part.clock.step_ns * 1e-9
         for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
-            servo.command_effort(pid.effort(self._target - joint.velocity, seconds))
+            velocity = joint.velocity
+            error = self._target - velocity
+            command = pid.velocity_command(error, velocity, seconds, step, joint.lightness)
+            servo.command_effort(*command)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
