@@ -77,9 +77,9 @@ def _controllers(path: Path) -> None:
         controller_entries,
         is_ros2,
         read_parameters,
-        ros1_entries,
         ros2_file,
     )
+    from cartwheel.dialects.ros_control.launched.names import ros1_entries
     from cartwheel.dialects.ros_control.substitution import substitute
 
     content = substitute(read_parameters(path), path, {"name": "x", "prefix": ""})
