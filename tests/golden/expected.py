@@ -13,6 +13,8 @@ from .trial import Ears, state
 
 FILE = HERE / "expected.json"
 SECONDS = 1.0
+_PORT_TAKEN = "CW840"
+"""Another program, such as another test, may have the port of a flight controller."""
 _QUICKER = 5.0
 """The commands of five seconds are given within one."""
 _DIGITS = 5
@@ -51,6 +53,7 @@ def brief(subject: Subject) -> dict[str, Any]:
             error = failed.code.number
         now = state(world)
         codes = Counter(each.code.number for each in world.diagnostics)
+        codes.pop(_PORT_TAKEN, None)
         return {
             "error": error,
             "models": {name: _rounded(pose) for name, pose in now["models"].items()},
