@@ -1,11 +1,16 @@
 """Proportional gains that do not overcome the friction of a joint, or do not hold its load."""
 
+import math
+
 import pytest
 from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
 
 from cartwheel.checks.checking import check
+from cartwheel.checks.gains import gain_too_low, upright_stiffness
+from cartwheel.checks.robot import Robot
 from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW
 from cartwheel.corpus import try_robot
+from cartwheel.description import load_robot
 
 GZ = (
     '<plugin name="p" filename="gz-sim-joint-position-controller-system">'
@@ -118,3 +123,85 @@ def test_a_gain_that_does_not_hold_a_load_up_is_reported(tmp_path, pose, p, repo
         return
     codes = [each.code for each in try_robot(path, standing=1.0, controllers=files).faults]
     assert codes == [CONTROLLER_GAIN_TOO_LOW] * reported
+
+
+def upright(dynamics: str = '<dynamics damping="2"/>') -> str:
+    """A weight of 2 kg 0.5 m above its joint: 9.8 N m/rad."""
+    arm = beam("beam", "world").replace(
+        '<origin xyz="0 0 1"/>', '<origin xyz="0 0 1" rpy="0 -1.5708 0"/>', 1
+    )
+    return arm.replace("</joint>", f"{dynamics}</joint>", 1)
+
+
+@pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
+def test_an_integral_does_not_hold_a_load_up(tmp_path, gz):
+    """``J s³ + d s² + (p - C) s + i`` has a root with a positive real part if p is below C."""
+    path = tmp_path / "arm.urdf"
+    plugin = GZ.format(p=5.0, i=30.0) if gz else ROS1
+    path.write_text(robot(upright() + transmission("beam_joint", "Effort"), plugin))
+    (tmp_path / "move.yaml").write_text(FILE.format(p=5.0, i=30.0))
+    files = () if gz else (tmp_path / "move.yaml",)
+    found = check(path, controller_files=files).findings
+    (weak,) = (each for each in found if each.code is CONTROLLER_GAIN_TOO_LOW)
+    assert weak.values["upright"] == pytest.approx(9.8)
+    (reach,) = try_robot(path, standing=1.0, controllers=files).reaches
+    assert not reach.arrived
+
+
+@pytest.mark.parametrize(
+    "held",
+    [
+        # Friction above C holds it at each angle, with a gain that overcomes the friction.
+        upright('<dynamics friction="11" damping="2"/>'),
+        # Gravity does not act on it.
+        upright() + '<gazebo reference="beam"><gravity>0</gravity></gazebo>',
+    ],
+    ids=["friction", "weightless"],
+)
+def test_a_load_that_something_else_holds_up_is_not_reported(tmp_path, held):
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot(held, GZ.format(p=5.0, i=0.0)))
+    found = check(path).findings
+    assert not [each for each in found if "upright" in each.values]
+
+
+def test_a_part_without_gravity_does_not_move_the_center_of_the_load(tmp_path):
+    """A counterweight below the joint, on which gravity does not act, does not balance."""
+    counter = (
+        '<link name="counter"><inertial><origin xyz="-0.5 0 0"/><mass value="2"/>'
+        '<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        '<joint name="mount" type="{kind}"><parent link="beam"/><child link="counter"/>'
+        '<axis xyz="1 0 0"/></joint><gazebo reference="counter"><gravity>0</gravity></gazebo>'
+    )
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot(upright() + counter.format(kind="continuous"), GZ.format(p=5.0, i=0.0)))
+    (weak,) = (each for each in check(path).findings if each.code is CONTROLLER_GAIN_TOO_LOW)
+    assert weak.values["upright"] == pytest.approx(9.8)
+
+
+def test_the_gain_of_a_velocity_is_not_compared_with_gravity(tmp_path):
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot(upright(), ""))
+    described = Robot(load_robot(path), None)
+    joint = described.joints["beam_joint"]
+    assert [*gain_too_low(described, joint, 5.0, None)]
+    assert not [*gain_too_low(described, joint, 5.0, None, of_velocity=True)]
+
+
+def test_the_loads_of_a_long_chain_are_those_of_its_parts(tmp_path):
+    """Joint k of n beams along x carries n - k of them, with centres at 0.5, 1.5, … from it."""
+    count = 30
+    links = "".join(
+        beam(f"b{k}", f"b{k - 1}" if k else "world", origin="1 0 0").replace(
+            '<origin xyz="1 0 0"/>',
+            f'<origin xyz="1 0 0" rpy="0 {0 if k else -math.pi / 2} 0"/>',
+        )
+        for k in range(count)
+    )
+    path = tmp_path / "chain.urdf"
+    path.write_text(robot(links, ""))
+    described = Robot(load_robot(path), None)
+    for k in range(count):
+        above = sum(0.5 + index for index in range(count - k))
+        stiffness = upright_stiffness(described, described.joints[f"b{k}_joint"])
+        assert stiffness == pytest.approx(2.0 * 9.8 * above)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,8 @@ from cartwheel.checks.resting import starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import wheel_axis, wheel_place
 from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW
-from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import Joint
+from cartwheel.description.solids import Floats
 from cartwheel.errors import Diagnostic, Origin
 
 ANGLE, LENGTH = 0.2, 0.02
@@ -28,21 +29,35 @@ SLOW = 5.0
 
 
 def gain_too_low(
-    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
+    robot: Robot,
+    joint: Joint,
+    gain: float,
+    origin: Origin | None,
+    *,
+    integral: float = 0.0,
+    of_velocity: bool = False,
+    **place: Any,
 ) -> Iterator[Diagnostic]:
     """The findings that a proportional gain is too low for a joint's friction, or for the weight on
     it.
+
+    An integral overcomes friction and a constant weight, but does not hold up a load above the
+    joint: ``J s³ + d s² + (p - C) s + i`` has a root with a positive real part if p is below C.
 
     Args:
         robot: The robot.
         joint: One of its joints.
         gain: N m/rad or N/m.
         origin: Where the gain is stated.
+        integral: The integral gain in N m/(rad s) or N/(m s).
+        of_velocity: Whether it is the gain of a velocity, in N m s/rad or N s/m.
         place: More arguments of the diagnostics.
     """
-    yield from _is_stuck(joint, gain, origin, **place)
-    yield from _cannot_hold(robot, joint, gain, origin, **place)
-    yield from _falls_over(robot, joint, gain, origin, **place)
+    if integral * SLOW < gain:
+        yield from _is_stuck(joint, gain, origin, **place)
+        yield from _cannot_hold(robot, joint, gain, origin, **place)
+    if not of_velocity:
+        yield from _falls_over(robot, joint, gain, origin, **place)
 
 
 def upright_stiffness(robot: Robot, joint: Joint) -> float:
@@ -58,20 +73,17 @@ def upright_stiffness(robot: Robot, joint: Joint) -> float:
         joint: One of its joints.
 
     Returns:
-        0 if the joint does not turn, if it starts further than 60° from the upright position, or if
-        its limits exclude this position.
+        0 if the joint does not turn, if it starts further than 60° from the upright position, if
+        its limits exclude this position, or if its friction or its spring holds the load.
     """
     turns = joint.type in ("revolute", "continuous")
     if not turns or joint.child not in robot.placed or joint.mimic is not None:
         return 0.0
-    poses = starting_poses(robot)
-    carried = _links_on(robot, joint)
-    links = tuple(each for each in robot.description.links if each.name in carried)
-    center = center_of_mass(replace(robot.description, links=links), poses)
-    if center is None:
+    load = _loads(robot).get(joint.child)
+    if load is None or load.mass <= 0.0:
         return 0.0
     axis = wheel_axis(robot, joint)
-    arm = np.array(center) - np.array(wheel_place(robot, joint).position)
+    arm = load.moment / load.mass - np.array(wheel_place(robot, joint).position)
     arm, up = (each - (each @ axis) * axis for each in (arm, np.array([0.0, 0.0, 1.0])))
     left = math.atan2(float(axis @ np.cross(arm, up)), float(arm @ up))
     lower, upper = joint.axis.lower, joint.axis.upper
@@ -82,7 +94,10 @@ def upright_stiffness(robot: Robot, joint: Joint) -> float:
             return 0.0
     if abs(left) > _UPRIGHT:
         return 0.0
-    return float(_GRAVITY * _mass_on(robot, joint) * np.linalg.norm(arm) * np.linalg.norm(up))
+    stiffness = float(_GRAVITY * load.mass * np.linalg.norm(arm) * np.linalg.norm(up))
+    if joint.axis.friction >= stiffness:
+        return 0.0
+    return max(0.0, stiffness - joint.axis.spring_stiffness)
 
 
 def span(joint: Joint) -> float | None:
@@ -121,7 +136,8 @@ def _cannot_hold(
     way, weight = span(joint), 0.0
     if way is not None and gain > 0.0 and joint.child in robot.placed:
         upward = abs(float(wheel_axis(robot, joint)[2]))
-        weight = _GRAVITY * upward * _mass_on(robot, joint)
+        load = _loads(robot).get(joint.child)
+        weight = _GRAVITY * upward * load.mass if load is not None else 0.0
     if way is None or gain <= 0.0 or weight / gain <= way:
         return
     yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
@@ -148,31 +164,46 @@ def _falls_over(
         "per rad",
         values={"joint": joint.name, "gain": gain, "upright": least},
         origin=origin,
-        hint=f"Use a gain well above {least:.3g} N m/rad, or an integral gain.",
+        hint=f"Use a gain well above {least:.3g} N m/rad. An integral gain does not suffice.",
         **place,
     )
 
 
-def _mass_on(robot: Robot, joint: Joint) -> float:
-    """Mass of what a joint carries, kg."""
-    links = (robot.links.get(name) for name in _links_on(robot, joint))
-    return sum(
-        link.inertial.mass
-        for link in links
-        if link is not None and link.inertial is not None and link.gravity
-    )
+@dataclass(frozen=True, slots=True)
+class _Load:
+    """What a joint carries, as far as gravity acts on it."""
+
+    mass: float
+    """kg."""
+    moment: Floats
+    """Sum of mass times position at the start, in the model frame, kg m, shape (3,)."""
 
 
-def _links_on(robot: Robot, joint: Joint) -> set[str]:
-    """Names of the links that a joint carries."""
-    below, left = robot.inbound, [joint.child]
+@lru_cache(maxsize=1)
+def _loads(robot: Robot) -> Mapping[str, _Load]:
+    """The loads of all links, each with the links that it carries, by name.
+
+    One pass, because a robot may be a long chain. Links in loops of joints are left out.
+    """
+    poses = starting_poses(robot)
     children: dict[str, list[str]] = {}
-    for child, holder in below.items():
+    for child, holder in robot.inbound.items():
         children.setdefault(holder.parent, []).append(child)
-    seen = set(left)
-    while left:
-        name = left.pop()
-        more = [each for each in children.get(name, []) if each not in seen]
-        seen.update(more)
-        left += more
-    return seen
+    order = [name for name in robot.links if name not in robot.inbound]
+    known = robot.links.keys() | robot.inbound.keys()
+    order += [name for name in children if name not in known]  # such as the world
+    for name in order:
+        order += children.get(name, ())
+    masses = dict.fromkeys(order, 0.0)
+    moments = {name: np.zeros(3) for name in order}
+    for name in reversed(order):
+        link = robot.links.get(name)
+        if link is not None and link.inertial is not None and link.gravity and name in poses:
+            masses[name] += link.inertial.mass
+            place = poses[name] @ link.inertial.pose
+            moments[name] += link.inertial.mass * np.array(place.position)
+        if name in robot.inbound:
+            parent = robot.inbound[name].parent
+            masses[parent] += masses[name]
+            moments[parent] += moments[name]
+    return {name: _Load(masses[name], moments[name]) for name in order}

@@ -88,10 +88,12 @@ def too_weak(
             named = {each.text.strip() for each in tag.element.find_all("joint_name")}
             places |= dict.fromkeys(named, tag.origin)
     described = Robot(robot, None)
+    fast = motion.commanded_speeds(started)
     for name in joints:
         joint = robot.joint(name)
         if joint is not None and name in gains:
-            yield from gain_too_low(described, joint, gains[name], places.get(name, joint.origin))
+            place = places.get(name, joint.origin)
+            yield from gain_too_low(described, joint, gains[name], place, of_velocity=name in fast)
 
 
 def undamped(

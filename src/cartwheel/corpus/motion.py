@@ -107,11 +107,12 @@ def reaches(
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
     body = Robot(description, None)
+    fast = commanded_speeds(started)
     # A joint that falls over does not sag by a small angle.
     gains = {
         name: gain
         for name, gain in gains.items()
-        if name not in joints or gain >= upright_stiffness(body, joints[name])
+        if name not in joints or name in fast or gain >= upright_stiffness(body, joints[name])
     }
     commanded = [joints[name] for taker in takers for name in taker.joints]
     targets = _targets(world, model, commanded)
@@ -207,6 +208,16 @@ def _is_commanded(world: World, controller: Controller) -> bool:
     return any(
         info.publishers and controller.node in info.subscribers for info in world.graph.topics()
     )
+
+
+def commanded_speeds(started: Sequence[Controller]) -> set[str]:
+    """The joints whose velocities controllers command, so that a PID's gain is one of velocity."""
+    return {
+        joint
+        for each in started
+        for joint, interface in each.interfaces.items()
+        if interface == "velocity"
+    }
 
 
 def yields(proportional: float, integral: float) -> bool:

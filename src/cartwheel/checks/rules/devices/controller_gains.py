@@ -16,7 +16,7 @@ from cartwheel.checks.controller_claims import (
     used_controllers,
 )
 from cartwheel.checks.controller_files import Controller, Value
-from cartwheel.checks.gains import SLOW, gain_too_low
+from cartwheel.checks.gains import gain_too_low
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -92,14 +92,14 @@ def gains_too_low(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             with contextlib.suppress(PluginError):
                 given, _ = read(JointPositionParameters, tag.element)
-                if given.velocity or given.i * SLOW >= given.p:
+                if given.velocity:
                     continue
                 place = next(tag.element.find_all("p_gain"), None)
                 origin = tag.origin if place is None else place.origin
                 for name in given.joints:
                     if name.strip() in robot.joints:
                         joint = robot.joints[name.strip()]
-                        yield from gain_too_low(robot, joint, given.p, origin)
+                        yield from gain_too_low(robot, joint, given.p, origin, integral=given.i)
 
 
 @rule(devices_codes.DERIVATIVE_GAIN_TOO_HIGH)
@@ -148,10 +148,10 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Diagnostic]
             clamped = any(_number(controller, f"{path}/{name}") for name in _CLAMPS)
             # ros_control limits the integral to 0 if no limit is stated.
             integral = 0.0 if ros1 and not clamped else _number(controller, f"{path}/i")
-            if value is None or value.number is None or integral * SLOW >= value.number:
+            if value is None or value.number is None:
                 continue
             joint, gain, origin = robot.joints[claim.joint], value.number, value.origin
-            yield from gain_too_low(robot, joint, gain, origin, mark=value.text)
+            yield from gain_too_low(robot, joint, gain, origin, integral=integral, mark=value.text)
 
 
 def _number(controller: Controller, path: str) -> float:
