@@ -339,7 +339,16 @@ def test_a_robot_on_two_wheels_tips_until_its_body_touches_the_ground(tmp_path, 
     (finding,) = balanced(tmp_path, text)
     assert finding.values["angle"] == pytest.approx(angle, abs=1e-3)
     assert finding.values["touches"] == ("base_link" if length > 0.1 else "mast")
-    assert f"{how} {np.degrees(angle):.2g}°" in finding.message
+    assert f"{how} {np.degrees(angle):.3g}°" in finding.message
+
+
+@pytest.mark.wording
+def test_angles_of_100_degrees_and_more_are_written_without_an_exponent(tmp_path):
+    """A short mast touches the ground with its top only when the robot lies upside down."""
+    text = pendulum(0.06).replace("0.2 0.1 0.02", "0.02 0.1 0.02").replace("0.25", "0.04")
+    (finding,) = balanced(tmp_path, text)
+    assert finding.values["angle"] > np.radians(100)
+    assert f"by {np.degrees(finding.values['angle']):.0f}" in finding.message
 
 
 @pytest.mark.parametrize(

@@ -189,7 +189,7 @@ def _fall(
     )
     if not np.isfinite(angle):
         return "falls over, unless a program balances it", {}
-    degrees = f"{math.degrees(angle):.2g}°"
+    degrees = f"{math.degrees(angle):.3g}°"
     how = f'tips by {degrees} until "{link}" touches the ground'
     if angle > _FALLEN:
         how = f'falls over by {degrees} until "{link}" touches the ground'
