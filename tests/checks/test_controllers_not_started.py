@@ -9,6 +9,7 @@ from cartwheel.codes.devices import (
     CONTROLLER_TYPE_UNKNOWN,
 )
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
+from cartwheel.description.files.plugin_xml import exporting_file
 from cartwheel.dialects.ros_control.catalogue import find_type
 from cartwheel.errors import UnknownNameError
 
@@ -104,6 +105,14 @@ def test_a_type_that_the_repository_exports_exists(tmp_path, exported, severity,
     with pytest.raises(UnknownNameError) as caught:
         find_type(OWN, ros2=False, file=str(path))
     assert bool(caught.value.values["meant"]) == meant
+
+
+def test_the_names_that_are_kept_of_a_file_are_bounded(tmp_path):
+    """A repository may contain thousands of such files."""
+    names = "".join(f'<class name="own/Controller{number}"/>' for number in range(500))
+    path = own_controller(tmp_path, "elbow, wrist", names)
+    assert exporting_file(path, "own/Controller0") is not None
+    assert exporting_file(path, "own/Controller499") is None
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,8 @@ from cartwheel.description.files.repositories import repository_of
 
 _PACKAGES, _FILES, _BYTES = 200, 20, 65536
 """Packages of a repository that are searched, XML files of each, and bytes of each file."""
+_NAMES = 300
+"""Names and types of each file that are kept."""
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _TAG = re.compile(r"<class\s[^<>]*>")
 _NAME = re.compile(r"""\b(?:name|type)\s*=\s*["']([^"'<>]+)["']""")
@@ -53,5 +55,6 @@ def _exported(path: Path, _changed: int) -> frozenset[str]:
         OSError: The file cannot be read.
     """
     text = read_start(path, _BYTES).decode("utf-8", "replace")
-    tags = _TAG.findall(_COMMENT.sub("", text))
-    return frozenset(each.replace("::", "/") for tag in tags for each in _NAME.findall(tag))
+    tags = _TAG.finditer(_COMMENT.sub("", text))
+    names = (each.replace("::", "/") for tag in tags for each in _NAME.findall(tag[0]))
+    return frozenset(itertools.islice(names, _NAMES))
