@@ -120,3 +120,28 @@ def test_the_launch_file_that_is_started_is_reported_although_another_one_expand
     folder = path.parents[1] / "launch"
     starts = [read_launch(folder / f"{index}.launch", {}) for index in (0, 1)]
     assert [len(coded(each, DESCRIPTION_NOT_EXPANDED)) for each in starts] == [1, 0]
+
+
+def test_other_values_of_an_argument_are_not_taken_for_a_file_that_is_not_expanded(
+    bot: Write,
+) -> None:
+    """The launch file is read again for each of them, and passes the text of the first robot."""
+    path = bot(
+        MASS + BODY,
+        TEXT.replace("robot_description", "one/robot_description")
+        + '<arg name="size" default="small"/>'
+        + XACRO.replace("bot.urdf", "arm_$(arg size).urdf")
+        + SPAWN,
+    )
+    for size in ("small", "large"):
+        path.with_name(f"arm_{size}.urdf.xacro").write_text(path.read_text())
+    plain = {
+        use.description.name: use.plain is not None
+        for use in launches_near(path.parents[1])
+        if use.description is not None
+    }
+    assert plain == {
+        "bot.urdf.xacro": True,
+        "arm_small.urdf.xacro": False,
+        "arm_large.urdf.xacro": False,
+    }

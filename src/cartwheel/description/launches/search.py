@@ -58,9 +58,18 @@ def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterato
         known = {description for description, _ in facts.descriptions}
         for given in _others(facts):
             other = facts_of(path, near, given, effort)
-            new = [each for each in other.descriptions if each[0] not in known]
-            known |= {description for description, _ in new}
-            other.descriptions = new
+            new = [
+                number
+                for number, (description, _) in enumerate(other.descriptions)
+                if description not in known
+            ]
+            known |= {description for description, _ in other.descriptions}
+            other.plain = {
+                place: other.plain[number]
+                for place, number in enumerate(new)
+                if number in other.plain
+            }
+            other.descriptions = [other.descriptions[number] for number in new]
             if new:
                 yield from uses_of(path, other, given.values())
 
