@@ -535,6 +535,19 @@ def test_a_joint_cannot_mimic_one_without_a_position(kind):
         )
 
 
+def test_a_joint_without_a_position_cannot_mimic_another():
+    found = robot(
+        """<link name="a"/><link name="b"/><link name="c"/>
+        <joint name="lead" type="revolute"><parent>a</parent><child>b</child><axis/></joint>
+        <joint name="j" type="ball"><parent>a</parent><child>c</child><axis>
+          <mimic joint="lead"><multiplier>2</multiplier></mimic></axis></joint>""",
+        "1.11",
+    )
+    assert found.joint("j").mimic is None
+    (said,) = (each for each in found.diagnostics if each.code is MIMIC_UNKNOWN)
+    assert (said.severity, said.values["joint"]) == ("warning", "j")
+
+
 def test_sensors_and_plugins():
     found = link(
         """<sensor name="eye" type="camera"><pose>0 0 1 0 0 0</pose><update_rate>30</update_rate>

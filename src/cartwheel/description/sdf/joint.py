@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from cartwheel.codes import robot, tags
-from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import Node
-from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
+from cartwheel.description.model import Axis, Joint, JointType, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
+from cartwheel.description.sdf.mimic import read_mimic
 from cartwheel.description.sdf.sensors import read_sensor, read_sensors
 from cartwheel.description.sdf.zero_axis import accept_zero_axis
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
@@ -178,7 +178,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
                 origin=node.origin,
                 values={"joint": name, "missing": "axis2"},
             )
-    mimic = _mimic(axis) if axis is not None else None
+    mimic = read_mimic(axis, name, kind, ctx) if axis is not None else None
     ode = node.find("physics/ode")
     cfm, erp, feedback, damper = None, None, False, False
     if ode is not None:
@@ -330,23 +330,6 @@ def _limit(value: float | None) -> float | None:
 def _bound(value: float | None) -> float | None:
     """Effort and velocity: -1 and infinity mean unlimited."""
     return None if value is None or value < 0 or value >= _UNLIMITED else value
-
-
-def _mimic(axis: Node) -> Mimic | None:
-    """SDF 1.11: q = multiplier (leader - reference) + offset."""
-    node = axis.child("mimic")
-    if node is None:
-        return None
-
-    def bounded(path: str, default: float, most: float) -> float:
-        origin = (node.child(path) or node).origin
-        return numbers.within(node.number_at(path, default), most, f"<{path}>", origin)
-
-    farthest = numbers.FARTHEST_JOINT
-    multiplier = bounded("multiplier", 1.0, numbers.MOST_RATIO)
-    offset = bounded("offset", 0.0, farthest) - multiplier * bounded("reference", 0.0, farthest)
-    numbers.within(offset, farthest, "offset - multiplier x reference of <mimic>", node.origin)
-    return Mimic(joint=node.require("joint").strip(), multiplier=multiplier, offset=offset)
 
 
 def _pitch(node: Node) -> float:
