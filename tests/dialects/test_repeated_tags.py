@@ -15,6 +15,7 @@ RATE = "<updateRate>20</updateRate>\n<updateRate>{}</updateRate>"
     [
         (RATE.format(10), True),
         (RATE.format(" 20 "), False),
+        (RATE.format("20.0"), False),
         ("<robotBaseFrame>base</robotBaseFrame>", False),
     ],
 )

@@ -47,7 +47,8 @@ def repeated(used: Element, siblings: Collection[Element]) -> list[Diagnostic]:
     """
     value = used.text.strip()
     other = next(
-        (each for each in siblings if each.tag == used.tag and each.text.strip() != value), None
+        (each for each in siblings if each.tag == used.tag and _differ(each.text.strip(), value)),
+        None,
     )
     if other is None or all(each is not used for each in siblings):
         return []
@@ -60,6 +61,14 @@ def repeated(used: Element, siblings: Collection[Element]) -> list[Diagnostic]:
             mark=f"<{used.tag}",
         )
     ]
+
+
+def _differ(one: str, other: str) -> bool:
+    """Whether two texts are different values; 1.0 and 1 are not."""
+    try:
+        return float(one) != float(other)
+    except ValueError:
+        return one != other
 
 
 def kept(error: PluginError, element: Element, default: str, allowed: Sequence[str]) -> Diagnostic:
