@@ -45,9 +45,16 @@ class LaunchSearch:
     def __init__(self, package_path: Sequence[Path] = (), given: Path | None = None) -> None:
         self._given = given
         self._read = cache(partial(launches_near, package_path=package_path))
+        self._known: dict[Path, OwnLaunches] = {}
 
     def of(self, description: Path) -> OwnLaunches:
         """The launch files of a description's author."""
+        known = self._known.get(description)
+        if known is None:
+            known = self._known[description] = self._find(description)
+        return known
+
+    def _find(self, description: Path) -> OwnLaunches:
         repository = repository_of(description)
         within = self._given if repository is None else None
         near, far = root_of(description), repository or within

@@ -82,16 +82,13 @@ class Guard:
         if not size < _HUGE**2:
             raise self._diverged(place_of)
         counts = self._counts.tolist()
-        messages: list[str] = []
-        if any(counts):
-            self._look(counts, messages, place_of)
+        messages = self._messages(counts, place_of) if any(counts) else []
         self._keep()
         return messages
 
-    def _look(
-        self, counts: list[int], messages: list[str], place_of: Callable[[str], Origin | None]
-    ) -> None:
-        """Adds the messages of new engine warnings."""
+    def _messages(self, counts: list[int], place_of: Callable[[str], Origin | None]) -> list[str]:
+        """The messages of engine warnings that are new."""
+        messages = []
         for kind, count in enumerate(counts):
             if count and kind not in self._seen:
                 if _WARNING(kind) in _UNSTABLE:
@@ -99,6 +96,7 @@ class Guard:
                 text = mujoco.mju_warningText(kind, int(self._data.warning[kind].lastinfo))
                 messages.append(str(text).strip())
             self._seen[kind] = count
+        return messages
 
     def _diverged(self, place_of: Callable[[str], Origin | None]) -> DivergedError:
         self._keep()
