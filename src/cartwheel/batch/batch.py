@@ -57,10 +57,11 @@ class Batch:
             ``data[:3]`` are its first three. Or for any name, a tuple of a function and its number
             of columns: it receives the `World` and the columns as an array before each step.
         obs: The observations by name. Each is a field of the newest message of the topic of this
-            name, a list of fields, a tuple of a topic and its fields, a `PoseOf` a model, or a
-            function that receives the `World` and returns numbers. ``ranges[:90]`` is a part of an
-            array, as for `Topic.values`. The field ``data`` of an image is its picture, of shape
-            (height, width, 3), uint8, or its depths in m. All other numbers are float64.
+            name, a list of fields, a tuple of a topic and its fields, the pose of a model
+            (`PoseOf`), or a function that receives the `World` and returns numbers.
+            ``ranges[:90]`` is a part of an array, as for `Topic.values`. The field ``data`` of an
+            image is its picture, of shape (height, width, 3), uint8, or its depths in m. All other
+            numbers are float64.
         period: Simulation time of a step, s.
         seed: Seed of the first world.
         vary: Called with the world and a random generator after each reset, to change masses,
