@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -263,6 +265,23 @@ def test_a_process_that_ends_is_an_error(built):
         with raises(BATCH_PROCESS_ENDED):
             for _ in range(10):
                 made.step(np.ones((N, 2)))
+
+
+def test_a_script_without_a_guard_is_told_what_to_write(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import cartwheel as cw\n"
+        "from cartwheel.batch import Batch\n"
+        'built = cw.build("empty", ["rosbots"])\n'
+        'act = {"/part2_cmr/cmd_vel": ["linear.x"]}\n'
+        'batch = Batch(built, 2, act=act, obs={"/imu/data": "orientation.w"}, workers=1)\n'
+        "batch.reset()\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, script], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 1
+    assert 'below `if __name__ == "__main__":`' in ended.stderr.splitlines()[-1]
 
 
 def test_processes_end_with_the_batch(built):

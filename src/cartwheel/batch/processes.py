@@ -24,6 +24,11 @@ Method = Literal["spawn", "fork", "forkserver"]
 _END = 30.0
 """Wall time in which a process must end, also on a busy computer, s."""
 
+_UNGUARDED = (
+    'A script must make the batch below `if __name__ == "__main__":`, because each process imports '
+    "it. Or pass workers=0."
+)
+
 
 class Lanes:
     """Several worlds in this process.
@@ -100,6 +105,7 @@ class Process:
         ours, theirs = context.Pipe()
         self._link = Link(ours)
         self._calls = 0
+        self._has_answered = False
         # A forked process has a copy of this end, with which it would not notice that this process
         # was killed.
         ends = (theirs, ours) if method == "fork" else (theirs,)
@@ -135,7 +141,9 @@ class Process:
                 f"a process of the batch ended {why}",
                 code=BATCH_PROCESS_ENDED,
                 values={"status": str(status)},
+                hint=_UNGUARDED if status == 1 and not self._has_answered else "",
             ) from None
+        self._has_answered = True
         if error is not None:
             raise error
         return unpacked(result)
