@@ -288,6 +288,61 @@ def test_a_body_moved_in_its_sleep_falls(make):
     assert world.model("cup").pose.z == pytest.approx(1 - fallen, rel=1e-9)
 
 
+RESTS = range(5, 60)
+"""Steps of rest after which a box is awake, about to fall asleep, or asleep."""
+FALL = 20
+"""Steps."""
+FALLEN = pytest.approx(G * DEFAULT_STEP**2 * FALL * (FALL + 1) / 2, abs=2e-3)
+"""m; a box on the ground still springs a little after few steps."""
+
+
+def falls(world, change):
+    """How far the cup falls after a change that follows each number of steps of rest, m."""
+    found, slept = [], set()
+    for rest in RESTS:
+        world.reset()
+        world.run(rest * DEFAULT_STEP)
+        slept.add(bool(asleep(world, "cup")))
+        change()
+        start = world.model("cup").pose.z
+        world.run(FALL * DEFAULT_STEP)
+        found.append(start - world.model("cup").pose.z)
+    assert slept == {True, False}
+    return found
+
+
+@pytest.mark.parametrize("how", ["set_pose", "set_state"])
+def test_a_body_moved_as_it_falls_asleep_falls(make, how):
+    world = make.world(make.box("cup", (0.1, 0.1, 0.1), pose=Pose((0, 0, 0.05))))
+
+    def lift():
+        getattr(world.session.simulation, how)("cup", Pose((0, 0, 1)))
+
+    assert falls(world, lift) == [FALLEN] * len(RESTS)
+
+
+@pytest.mark.parametrize("static", [False, True])
+def test_a_body_that_falls_asleep_as_its_support_is_moved_falls(make, static):
+    table = make.box("table", (1, 1, 0.5), pose=Pose((0, 0, 0.25)), static=static)
+    world = make.world(table, make.box("cup", (0.1, 0.1, 0.1), pose=Pose((0, 0, 0.55))))
+
+    def pull():
+        world.model("table").pose = Pose((3, 0, 0.25))
+
+    assert falls(world, pull) == [FALLEN] * len(RESTS)
+
+
+def test_a_body_that_falls_asleep_as_gravity_begins_falls(make):
+    world = make.world(make.box("cup", (0.1, 0.1, 0.1), pose=Pose((0, 0, 1))), gravity=0.0)
+    for rest in range(1, 20):
+        world.gravity = (0.0, 0.0, 0.0)
+        world.reset()
+        world.run(rest * DEFAULT_STEP)
+        world.gravity = (0.0, 0.0, -G)
+        world.run(FALL * DEFAULT_STEP)
+        assert 1 - world.model("cup").pose.z == FALLEN, rest
+
+
 def test_a_body_pushed_in_its_sleep_moves(make):
     """A force of F for t gives F t / m, also to one asleep."""
     world = make.world(make.box("cup", (0.1, 0.1, 0.1), mass=2, mu=0.0, pose=Pose((0, 0, 0.05))))

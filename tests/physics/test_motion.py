@@ -293,3 +293,18 @@ def test_a_pendulum_does_not_sleep_at_its_turning_points(step, amplitude):
         missed = 2 * (math.sqrt(G) * step) ** 2 + 1e-3
         assert late.max() == pytest.approx(amplitude, rel=missed)
         assert late.min() == pytest.approx(-amplitude, rel=missed)
+
+
+def test_a_pendulum_moved_as_it_falls_asleep_swings():
+    text = f'<sdf version="1.9">{pendulum(1.0)}</sdf>'
+    with World("empty") as world:
+        pivot = world.spawn(text).joints["pivot"]
+        angles = []
+        for rest in range(1, 20):
+            world.reset()
+            world.run(rest * DEFAULT_STEP)
+            pivot.position = 0.5
+            world.run(0.2)
+            angles.append(pivot.position)
+        assert angles[0] < 0.45
+        assert angles == pytest.approx([angles[0]] * len(angles))

@@ -26,8 +26,7 @@ def adjust(engine: Engine, world: WorldDescription) -> bool:
     model = engine.model
     if world.gravity != before.gravity:
         model.opt.gravity[:] = world.gravity
-        # The engine wakes trees that are marked as both awake and asleep.
-        engine.data.tree_awake[:] = 1
+        engine.wake_all()
     for index, light in enumerate(world.lights):
         for name, value in shine(light).items():
             getattr(model, f"light_{name}")[index] = value

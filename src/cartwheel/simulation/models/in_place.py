@@ -351,8 +351,7 @@ class InPlace:
         Args:
             changes_model: Whether more than the places of models has changed.
         """
-        # The engine wakes trees that are marked as both awake and asleep.
-        self._engine.data.tree_awake[:] = 1
+        self._engine.wake_all()
         self._engine.revisions += changes_model
         self._engine.note_change()
 

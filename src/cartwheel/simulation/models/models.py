@@ -220,6 +220,7 @@ class Models(Run):
         if joint < 0:
             speeds = self._place_fixed(name, pose)
         else:
+            self.engine.keep_awake([joint])
             self.engine.place(joint, pose @ entry.description.canonical_pose)
         self._population.separate(name, speeds)
 
@@ -275,8 +276,13 @@ class Models(Run):
                 raise UnknownNameError("joint", joint, known, code=world_codes.UNKNOWN_JOINT)
             number(position, f'the position of joint "{joint}"')
         self.engine.commanded += 1
-        for joint, position in with_mimics(description, positions).items():
-            self.engine.set_joint(self.engine.joint_id(name, joint), position)
+        moved = {
+            self.engine.joint_id(name, joint): position
+            for joint, position in with_mimics(description, positions).items()
+        }
+        self.engine.keep_awake(moved)
+        for index, position in moved.items():
+            self.engine.set_joint(index, position)
         self.engine.forward()
         self._population.separate(name)
 

@@ -29,14 +29,15 @@ def place_model(engine: Engine, entry: ModelEntry, pose: Pose, linear: Vec3, ang
     here = engine.link_pose(entry.name, description.canonical_link)
     step = pose @ description.canonical_pose @ here.inverse()
     places = {
-        link.name: step @ engine.link_pose(entry.name, link.name)
+        joint: step @ engine.link_pose(entry.name, link.name)
         for link in description.links
-        if engine.free_joint(entry.name, link.name) >= 0
+        if (joint := engine.free_joint(entry.name, link.name)) >= 0
     }
+    engine.keep_awake(places)
     _stop(engine, entry)
-    for link, place in places.items():
+    for joint, place in places.items():
         carried = _carried(place, pose, linear, angular)
-        engine.place(engine.free_joint(entry.name, link), place, carried, angular)
+        engine.place(joint, place, carried, angular)
 
 
 def put_fixed(engine: Engine, entry: ModelEntry) -> list[int]:
