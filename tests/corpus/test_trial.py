@@ -171,6 +171,17 @@ def test_a_wheel_of_half_the_stated_diameter_drives_half_as_fast(tried):
     assert verdict.outcome == "file"
 
 
+def test_a_base_that_turns_by_more_than_half_a_turn_while_it_is_measured(tried):
+    """Commanded at 0.4 rad/s, it turns at 2 rad/s, which is 4 rad in the measured 2 s."""
+    verdict = tried(cart(0.02))
+    (drive,) = verdict.drives
+    assert drive.measured_turn == pytest.approx(2.0, rel=0.05)
+    assert {fault.test: fault.code for fault in verdict.faults} == {
+        "drive": WHEEL_DIAMETER_MISMATCH,
+        "turn": WHEEL_DIAMETER_MISMATCH,
+    }
+
+
 def test_a_separation_explains_the_turn_rate_that_follows_from_it_and_no_other(tried):
     wide = cart(0.1).replace("<wheelSeparation>0.2<", "<wheelSeparation>0.3<")
     verdict = tried(wide)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence, Set
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from cartwheel.api import Model, World
@@ -228,7 +229,8 @@ def _measured(
 ) -> tuple[Motion, Facing]:
     """The velocity while a command is published, and the forward direction; see `_driven`."""
     before, joints = model.pose, positions(world, model)
-    _drive_on(world, topic, wanted, _MEASURED)
+    yaws = [_yaw(before)]
+    _drive_on(world, topic, wanted, _MEASURED, look=lambda: yaws.append(_yaw(model.pose)))
     after = model.pose
     speeds = {
         name: (end - joints[name]) / _MEASURED for name, end in positions(world, model).items()
@@ -241,7 +243,8 @@ def _measured(
     x, y, _ = rotate(before.orientation, ahead)
     length = math.hypot(x, y) or 1.0
     dx, dy = after.x - before.x, after.y - before.y
-    turned = math.remainder(_yaw(after) - _yaw(before), 2 * math.pi)
+    # A base that is much too fast turns by more than half a turn while it is measured.
+    turned = sum(math.remainder(now - then, 2 * math.pi) for then, now in pairwise(yaws))
     along, across = (x * dx + y * dy) / length, (x * dy - y * dx) / length
     return Motion(along / _MEASURED, across / _MEASURED, turned / _MEASURED), facing
 
@@ -260,8 +263,15 @@ def _take_off(world: World, topic: TopicInfo) -> bool:
 
 
 def _drive_on(
-    world: World, topic: TopicInfo, command: Motion, seconds: float, *, climb: float = 0.0
+    world: World,
+    topic: TopicInfo,
+    command: Motion,
+    seconds: float,
+    *,
+    climb: float = 0.0,
+    look: Callable[[], None] | None = None,
 ) -> None:
+    """Publishes a command, and calls `look` after each message."""
     linear = {"x": command.ahead, "y": command.left, "z": climb}
     twist = {"linear": linear, "angular": {"z": command.turn}}
     for _ in range(round(seconds * _RATE)):
@@ -271,6 +281,8 @@ def _drive_on(
             said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
         world.publish(topic.name, said)
         world.run(1.0 / _RATE)
+        if look is not None:
+            look()
 
 
 def _yaw(pose: Pose) -> float:
