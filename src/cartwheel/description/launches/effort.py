@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
+from collections.abc import Iterator
 
 UNKNOWN = "\0"
 """A character in texts of which a part is unknown."""
@@ -41,17 +43,47 @@ class Effort:
         self._end = time.thread_time() + _MOST_SECONDS
         self._packages: set[str] = set()
 
-    def spend(self, steps: int = 1) -> None:
-        """Counts steps.
+    @contextlib.contextmanager
+    def portion(self) -> Iterator[None]:
+        """Limits the block, which reads a launch file, to half of what remains.
+
+        If it costs more, it ends without an error, and other launch files can still be read.
 
         Raises:
-            TooCostlyError: There were too many, or they took too long.
+            TooCostlyError: Nothing remains.
         """
+        self._look()
+        steps, seconds, end = self._steps // 2, self._seconds / 2, self._end
+        self._steps -= steps
+        self._seconds -= seconds
+        self._next_look = self._steps
+        self._end -= (end - time.thread_time()) / 2
+        try:
+            yield
+        except TooCostlyError:
+            pass
+        finally:
+            self._steps += steps
+            self._next_look = self._steps
+            self._seconds += seconds
+            self._end = end
+
+    def spend(self, steps: int = 1) -> None:
+        """Counts steps before they are made.
+
+        Raises:
+            TooCostlyError: They are too many, or those before took too long.
+        """
+        if steps > self._steps:
+            raise TooCostlyError
         self._steps -= steps
         if self._steps < self._next_look:
-            self._next_look = self._steps - _LOOK
-            if self._steps < 0 or time.thread_time() > self._end:
-                raise TooCostlyError
+            self._look()
+
+    def _look(self) -> None:
+        self._next_look = self._steps - _LOOK
+        if self._seconds < 0 or time.thread_time() > self._end:
+            raise TooCostlyError
 
     def spend_seconds(self, seconds: float) -> None:
         """Counts CPU time of expressions.

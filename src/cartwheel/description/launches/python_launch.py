@@ -1,7 +1,6 @@
 """Reads launch files in Python (ROS 2) by their syntax tree. They are never executed.
 
-The file is long because its functions evaluate expressions and the actions in them, which call each
-other.
+The file is long because its functions evaluate statements and expressions, which call each other.
 """
 
 from __future__ import annotations
@@ -13,9 +12,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Literal
 
 from cartwheel.description.files.regular_files import read_regular_text
-from cartwheel.description.launches.bridging import BRIDGES
 from cartwheel.description.launches.effort import LONGEST
-from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.python_actions import (
     Later,
     called_functions,
@@ -23,6 +20,7 @@ from cartwheel.description.launches.python_actions import (
     start_all,
     used,
 )
+from cartwheel.description.launches.python_classes import CLASSES, Classes
 from cartwheel.description.launches.python_conditions import (
     CONDITIONS,
     compared,
@@ -53,9 +51,7 @@ from cartwheel.description.launches.python_values import (
     text,
 )
 from cartwheel.description.launches.python_variables import Place, Uncertain, Variables
-from cartwheel.description.launches.spawning import resolved, split
 from cartwheel.description.launches.use import Facts
-from cartwheel.description.launches.variants import SUFFIXES
 from cartwheel.errors import Origin
 
 _STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
@@ -92,7 +88,7 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
         depth,
     )
     defaults.file(tree)
-    _Reader(path, defaults.defaults, arguments, facts, depth).file(tree)
+    _Reader(path, defaults.classes.defaults, arguments, facts, depth).file(tree)
 
 
 def _ignore(_path: Path, _arguments: Mapping[str, str], _facts: Facts, _depth: int) -> None:
@@ -109,13 +105,9 @@ class _Reader:
         depth: int,
     ) -> None:
         self._path = path
-        self.defaults = dict(defaults)
-        self._given = given
+        self.classes = Classes(path, defaults, given, facts, depth)
         self._facts = facts
-        self._depth = depth
         self._turns = _MOST_TURNS
-        self._line = 0
-        """The line of the action that is made."""
         self._names = Variables({"__file__": str(path)})
         self._functions: dict[str, ast.FunctionDef] = {}
         """The functions of the file that the file itself calls."""
@@ -461,15 +453,18 @@ class _Reader:
             return Description(self._facts.describe(" ".join(map(joined, said)), origin))
         if name == "parse":
             return first if is_module(node.func, "xacro") else NOTHING
-        maker = _ACTIONS.get(name)
-        if maker is None:
+        if name == "OpaqueFunction":
+            self._call_opaque(words.get("function", first), words)
+            return NOTHING
+        meaning = CLASSES.get(name)
+        if meaning is None:
             return NOTHING
         if later:
-            made = functools.partial(maker, self, first, places, words)
+            made = functools.partial(meaning, self.classes, first, places, words)
             self._started.append(Later(made, self._facts.namespace))
             return self._started[-1]
-        self._line = node.lineno
-        return maker(self, first, places, words)
+        self.classes.line = node.lineno
+        return meaning(self.classes, first, places, words)
 
     def _skip(self, node: ast.Call) -> None:
         """Notes that an action that is not executed does not start those that it contains."""
@@ -514,18 +509,16 @@ class _Reader:
             self._facts.uncertain.setdefault(place, Uncertain(what="return", used=last))
         return NOTHING if value is None else value
 
-    def opaque(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """Calls a function of the file with the arguments that it is given."""
-        function = words.get("function", first)
-        if isinstance(function, ast.FunctionDef):
-            given = words.get("args", [])
-            more = words.get("kwargs", {})
-            self._called(
-                function,
-                [NOTHING, *(given if isinstance(given, list) else [])],
-                more if isinstance(more, dict) else {},
-            )
-        return NOTHING
+    def _call_opaque(self, function: Any, words: dict[str, Any]) -> None:
+        """Calls a function of the file with the arguments that an `OpaqueFunction` states."""
+        if not isinstance(function, ast.FunctionDef):
+            return
+        given, more = words.get("args", []), words.get("kwargs", {})
+        self._called(
+            function,
+            [NOTHING, *(given if isinstance(given, list) else [])],
+            more if isinstance(more, dict) else {},
+        )
 
     def _processed(self, file: str, mappings: Any) -> Description:
         arguments = (
@@ -534,140 +527,3 @@ class _Reader:
             else {}
         )
         return Description(self._facts.add(Path(file), arguments))
-
-    def configuration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """The value of a launch argument."""
-        name = text(words.get("variable_name", first))
-        if name in self._given:
-            return self._given[name]
-        return self.defaults.get(name, words.get("default", NOTHING))
-
-    def declaration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """Stores the default of a launch argument."""
-        name = text(words.get("name", first))
-        if not self._depth:
-            self._facts.declared.add(name)
-        if "default_value" in words and name not in self.defaults:
-            self.defaults[name] = joined(words["default_value"])
-        if not self._depth and name not in self._given and name in self.defaults:
-            self._facts.defaults[name] = joined(self.defaults[name])
-        return NOTHING
-
-    def setting(self, first: Any, places: list[Any], _: dict[str, Any]) -> Any:
-        """Stores the value of a launch argument."""
-        if len(places) > 1:
-            self.defaults[text(first)] = joined(places[1])
-        return NOTHING
-
-    def executable(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """The name of an executable."""
-        return words.get("name", first)
-
-    def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """Adds the description in a command."""
-        origin = Origin(file=str(self._path), line=self._line)
-        return Description(self._facts.describe(joined(words.get("command", first)), origin))
-
-    def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """The value of a Python expression, which consists of substitutions."""
-        value = evaluated(joined(words.get("expression", first)).strip(), {}, self._facts.effort)
-        return value if is_known(value) else NOTHING
-
-    def inclusion(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """Reads an included launch file."""
-        source = words.get("launch_description_source", first)
-        passed = words.get("launch_arguments", {})
-        if isinstance(passed, list):
-            pairs = [each for each in passed if isinstance(each, list) and len(each) == 2]
-            passed = {text(key): value for key, value in pairs}
-        arguments = (
-            {key: joined(value) for key, value in passed.items()}
-            if isinstance(passed, dict)
-            else {}
-        )
-        self._facts.effort.spend(len(self.defaults))
-        defaults = {name: joined(value) for name, value in self.defaults.items()}
-        inherited = {**defaults, **self._given}
-        self._facts.include(joined(source), arguments, self._depth, inherited)
-        return NOTHING
-
-    def push(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """Enters a namespace, until the end of the group."""
-        stated = joined(words.get("namespace", first))
-        self._facts.namespace = resolved(self._facts.namespace, stated)
-        return NOTHING
-
-    def node(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
-        """Adds what a node starts."""
-        arguments = words.get("arguments", [])
-        if not isinstance(arguments, list):
-            arguments = []
-        texts = [joined(each) for each in arguments]
-        if len(texts) == 1 and " " in texts[0]:
-            texts = split(texts[0])
-        package = text(words.get("package", ""))
-        executable = text(words.get("executable", words.get("node_executable", "")))
-        space = resolved(self._facts.namespace, joined(words.get("namespace", "")))
-        described = [each for each in arguments if isinstance(each, Description)]
-        pairs = words.get("remappings")
-        self._facts.node(
-            package,
-            executable,
-            texts,
-            space,
-            described=described[0].number if described else None,
-            remappings={
-                joined(each[0]): joined(each[1])
-                for each in (pairs if isinstance(pairs, list) else [])
-                if isinstance(each, list) and len(each) == 2
-            },
-        )
-        parameters = words.get("parameters")
-        for each in parameters if isinstance(parameters, list) else []:
-            if isinstance(each, dict):
-                self._publish(space, each)
-                if package in BRIDGES and "config_file" in each:
-                    self._facts.bridge(joined(each["config_file"]))
-            elif package == "controller_manager" and isinstance(each, str | list):
-                self._facts.parameters(joined(each))
-        return NOTHING
-
-    def bridge(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
-        """Adds the configuration file of ros_gz_bridge's action."""
-        self._facts.bridge(joined(words.get("config_file", "")))
-        return NOTHING
-
-    def _publish(self, space: str, parameters: Mapping[str, Any]) -> None:
-        """Stores the description that a node has as a parameter and publishes."""
-        value = parameters.get("robot_description")
-        number = value.number if isinstance(value, Description) else None
-        if isinstance(value, str) and value.endswith(SUFFIXES):
-            # The text of a file that was opened is its path.
-            number = self._facts.add(Path(value), {})
-        self._facts.store_topic(space, number)
-
-    def process(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
-        """Adds what a command starts."""
-        parts = words.get("cmd", first)
-        if isinstance(parts, list):
-            said = [joined(each) for each in parts]
-            self._facts.command(split(said[0]) if len(said) == 1 else said)
-        return NOTHING
-
-
-_ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]] = {
-    "Command": _Reader.command,
-    "DeclareLaunchArgument": _Reader.declaration,
-    "ExecuteProcess": _Reader.process,
-    "FindExecutable": _Reader.executable,
-    "IncludeLaunchDescription": _Reader.inclusion,
-    "LaunchConfiguration": _Reader.configuration,
-    "Node": _Reader.node,
-    "OpaqueFunction": _Reader.opaque,
-    "PushRosNamespace": _Reader.push,
-    "PushROSNamespace": _Reader.push,
-    "PythonExpression": _Reader.expression,
-    "RosGzBridge": _Reader.bridge,
-    "SetLaunchConfiguration": _Reader.setting,
-}
-"""What the classes of launch and launch_ros mean."""

@@ -39,10 +39,10 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
 
     A launch file that starts controllers for a robot of another launch file is one of them, without
     a description. Launch files are parsed, not executed. Texts that cannot be determined without
-    executing them are left out, and so are all further launch files once they cost too much.
+    executing them are left out, and so are launch files that cost too much to read.
     """
     found: list[LaunchUse] = []
-    with contextlib.suppress(TooCostlyError):
+    with contextlib.suppress(TooCostlyError):  # there are too many folders
         for each in _near(folder, package_path, Effort()):
             found.append(each)  # noqa: PERF402 - those before an error count
     return tuple(found)
@@ -53,25 +53,32 @@ def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterato
     packages: dict[Path, Packages] = {}
     for path in _files(folder, effort):
         near = packages.setdefault(path.parent, Packages(path, package_path))
-        facts = facts_of(path, near, {}, effort)
-        yield from uses_of(path, facts)
-        known = {description for description, _ in facts.descriptions}
-        for given in _others(facts):
-            other = facts_of(path, near, given, effort)
-            new = [
-                number
-                for number, (description, _) in enumerate(other.descriptions)
-                if description not in known
-            ]
-            known |= {description for description, _ in other.descriptions}
-            other.plain = {
-                place: other.plain[number]
-                for place, number in enumerate(new)
-                if number in other.plain
-            }
-            other.descriptions = [other.descriptions[number] for number in new]
-            if new:
-                yield from uses_of(path, other, given.values())
+        found: list[LaunchUse] = []
+        with effort.portion():
+            for each in _uses(path, near, effort):
+                found.append(each)  # noqa: PERF402 - those before an error count
+        yield from found
+
+
+def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]:
+    """What a launch file starts, also with other values of its arguments."""
+    facts = facts_of(path, packages, {}, effort)
+    yield from uses_of(path, facts)
+    known = {description for description, _ in facts.descriptions}
+    for given in _others(facts):
+        other = facts_of(path, packages, given, effort)
+        new = [
+            number
+            for number, (description, _) in enumerate(other.descriptions)
+            if description not in known
+        ]
+        known |= {description for description, _ in other.descriptions}
+        other.plain = {
+            place: other.plain[number] for place, number in enumerate(new) if number in other.plain
+        }
+        other.descriptions = [other.descriptions[number] for number in new]
+        if new:
+            yield from uses_of(path, other, given.values())
 
 
 def facts_of(

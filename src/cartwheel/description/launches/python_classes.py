@@ -1,0 +1,188 @@
+"""What the classes of launch and launch_ros mean (ROS 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from cartwheel.description.launches.bridging import BRIDGES
+from cartwheel.description.launches.evaluation import evaluated
+from cartwheel.description.launches.python_values import (
+    NOTHING,
+    Description,
+    is_known,
+    joined,
+    text,
+)
+from cartwheel.description.launches.spawning import resolved, split
+from cartwheel.description.launches.use import Facts
+from cartwheel.description.launches.variants import SUFFIXES
+from cartwheel.errors import Origin
+
+
+class Classes:
+    """The classes of launch and launch_ros that a launch file uses.
+
+    Each method has the first argument of the call, all that have no name, and those with names.
+
+    Args:
+        path: The launch file.
+        defaults: Defaults of the launch arguments that the file declares after their use.
+        given: The values of launch arguments.
+        facts: Receives what the actions start.
+        depth: The number of launch files that include this one.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        defaults: Mapping[str, Any],
+        given: Mapping[str, str],
+        facts: Facts,
+        depth: int,
+    ) -> None:
+        self._path = path
+        self.defaults = dict(defaults)
+        """The values of launch arguments that are not given."""
+        self._given = given
+        self._facts = facts
+        self._depth = depth
+        self.line = 0
+        """The line of the action that is made."""
+
+    def configuration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """The value of a launch argument."""
+        name = text(words.get("variable_name", first))
+        if name in self._given:
+            return self._given[name]
+        return self.defaults.get(name, words.get("default", NOTHING))
+
+    def declaration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Stores the default of a launch argument."""
+        name = text(words.get("name", first))
+        if not self._depth:
+            self._facts.declared.add(name)
+        if "default_value" in words and name not in self.defaults:
+            self.defaults[name] = joined(words["default_value"])
+        if not self._depth and name not in self._given and name in self.defaults:
+            self._facts.defaults[name] = joined(self.defaults[name])
+        return NOTHING
+
+    def setting(self, first: Any, places: list[Any], _: dict[str, Any]) -> Any:
+        """Stores the value of a launch argument."""
+        if len(places) > 1:
+            self.defaults[text(first)] = joined(places[1])
+        return NOTHING
+
+    def executable(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """The name of an executable."""
+        return words.get("name", first)
+
+    def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Adds the description in a command."""
+        origin = Origin(file=str(self._path), line=self.line)
+        return Description(self._facts.describe(joined(words.get("command", first)), origin))
+
+    def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """The value of a Python expression, which consists of substitutions."""
+        value = evaluated(joined(words.get("expression", first)).strip(), {}, self._facts.effort)
+        return value if is_known(value) else NOTHING
+
+    def inclusion(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Reads an included launch file."""
+        source = words.get("launch_description_source", first)
+        passed = words.get("launch_arguments", {})
+        if isinstance(passed, list):
+            pairs = [each for each in passed if isinstance(each, list) and len(each) == 2]
+            passed = {text(key): value for key, value in pairs}
+        arguments = (
+            {key: joined(value) for key, value in passed.items()}
+            if isinstance(passed, dict)
+            else {}
+        )
+        self._facts.effort.spend(len(self.defaults))
+        defaults = {name: joined(value) for name, value in self.defaults.items()}
+        inherited = {**defaults, **self._given}
+        self._facts.include(joined(source), arguments, self._depth, inherited)
+        return NOTHING
+
+    def push(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Enters a namespace, until the end of the group."""
+        stated = joined(words.get("namespace", first))
+        self._facts.namespace = resolved(self._facts.namespace, stated)
+        return NOTHING
+
+    def node(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
+        """Adds what a node starts."""
+        arguments = words.get("arguments", [])
+        if not isinstance(arguments, list):
+            arguments = []
+        texts = [joined(each) for each in arguments]
+        if len(texts) == 1 and " " in texts[0]:
+            texts = split(texts[0])
+        package = text(words.get("package", ""))
+        executable = text(words.get("executable", words.get("node_executable", "")))
+        space = resolved(self._facts.namespace, joined(words.get("namespace", "")))
+        described = [each for each in arguments if isinstance(each, Description)]
+        pairs = words.get("remappings")
+        self._facts.node(
+            package,
+            executable,
+            texts,
+            space,
+            described=described[0].number if described else None,
+            remappings={
+                joined(each[0]): joined(each[1])
+                for each in (pairs if isinstance(pairs, list) else [])
+                if isinstance(each, list) and len(each) == 2
+            },
+        )
+        parameters = words.get("parameters")
+        for each in parameters if isinstance(parameters, list) else []:
+            if isinstance(each, dict):
+                self._publish(space, each)
+                if package in BRIDGES and "config_file" in each:
+                    self._facts.bridge(joined(each["config_file"]))
+            elif package == "controller_manager" and isinstance(each, str | list):
+                self._facts.parameters(joined(each))
+        return NOTHING
+
+    def bridge(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
+        """Adds the configuration file of ros_gz_bridge's action."""
+        self._facts.bridge(joined(words.get("config_file", "")))
+        return NOTHING
+
+    def _publish(self, space: str, parameters: Mapping[str, Any]) -> None:
+        """Stores the description that a node has as a parameter and publishes."""
+        value = parameters.get("robot_description")
+        number = value.number if isinstance(value, Description) else None
+        if isinstance(value, str) and value.endswith(SUFFIXES):
+            # The text of a file that was opened is its path.
+            number = self._facts.add(Path(value), {})
+        self._facts.store_topic(space, number)
+
+    def process(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """Adds what a command starts."""
+        parts = words.get("cmd", first)
+        if isinstance(parts, list):
+            said = [joined(each) for each in parts]
+            self._facts.command(split(said[0]) if len(said) == 1 else said)
+        return NOTHING
+
+
+CLASSES: Mapping[str, Callable[[Classes, Any, list[Any], dict[str, Any]], Any]] = {
+    "Command": Classes.command,
+    "DeclareLaunchArgument": Classes.declaration,
+    "ExecuteProcess": Classes.process,
+    "FindExecutable": Classes.executable,
+    "IncludeLaunchDescription": Classes.inclusion,
+    "LaunchConfiguration": Classes.configuration,
+    "Node": Classes.node,
+    "PushRosNamespace": Classes.push,
+    "PushROSNamespace": Classes.push,
+    "PythonExpression": Classes.expression,
+    "RosGzBridge": Classes.bridge,
+    "SetLaunchConfiguration": Classes.setting,
+}
+"""What each class means. Those that call functions of the file are not among them."""
