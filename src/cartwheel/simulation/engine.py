@@ -31,10 +31,6 @@ _OBJ = mujoco.mjtObj
 _UNIT = mujoco.mjMINVAL / 2
 """Difference of a quaternion's length from 1 up to which MuJoCo surely takes it as it is."""
 _STILL: Vec3 = (0.0, 0.0, 0.0)
-_AWAKE = -(1 + mujoco.mjMINAWAKE)
-"""`MjData.tree_asleep` of a tree that moves. It increases by one in each step at rest, and at -1
-the tree falls asleep.
-"""
 
 
 class Engine(Computed):
@@ -358,37 +354,6 @@ class Engine(Computed):
         """Sets the position of a joint with one degree of freedom and stops the joint."""
         self.data.qpos[self.model.jnt_qposadr[joint]] = position
         self.data.qvel[self.model.jnt_dofadr[joint]] = 0.0
-
-    def wake_all(self) -> None:
-        """Wakes all bodies, because what keeps them at rest may have changed."""
-        # The engine wakes trees that are marked as both awake and asleep.
-        self.data.tree_awake[:] = 1
-        self._restart_counts(slice(None))
-
-    def keep_awake(self, joints: Collection[int]) -> None:
-        """Keeps the bodies of joints awake, and those in contact with them.
-
-        Call it before the joints are moved. MuJoCo itself wakes bodies that are asleep.
-        """
-        data, model = self.data, self.model
-        moved = np.zeros(len(data.tree_asleep), dtype=bool)
-        moved[model.dof_treeid[model.jnt_dofadr[list(joints)]]] = True
-        counts = data.tree_asleep[~moved]
-        if ((counts > _AWAKE) & (counts < 0)).any():
-            # So that the contacts do not depend on who has read data since the last step.
-            self.refresh()
-            islands = data.tree_island
-            moved |= (islands >= 0) & np.isin(islands, islands[moved])
-        self._restart_counts(moved)
-
-    def _restart_counts(self, trees: Any) -> None:
-        """Counts the steps at rest of awake trees anew.
-
-        MuJoCo counts them by the velocities before each step. A body that was moved into the air is
-        still at rest then, and could fall asleep there.
-        """
-        counts = self.data.tree_asleep
-        counts[trees] = np.where(counts[trees] < 0, _AWAKE, counts[trees])
 
     def joint_state(self, model: str, joint: str) -> tuple[list[float], list[float]]:
         """Positions in rad or m and velocities of a joint's axes; empty for joints without hinge

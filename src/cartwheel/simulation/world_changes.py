@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from cartwheel.description.model import Light, WorldDescription
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.models.waking import wake_all
 from cartwheel.world.lights import shine
 
 
@@ -26,7 +27,7 @@ def adjust(engine: Engine, world: WorldDescription) -> bool:
     model = engine.model
     if world.gravity != before.gravity:
         model.opt.gravity[:] = world.gravity
-        engine.wake_all()
+        wake_all(engine)
     for index, light in enumerate(world.lights):
         for name, value in shine(light).items():
             getattr(model, f"light_{name}")[index] = value

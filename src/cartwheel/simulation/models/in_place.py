@@ -17,6 +17,7 @@ from cartwheel.description.model import Joint, Link, RobotDescription, Surface
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.models.differences import differ_in_place
 from cartwheel.simulation.models.placement import put_fixed
+from cartwheel.simulation.models.waking import wake_all
 from cartwheel.world import (
     Build,
     Principal,
@@ -351,7 +352,7 @@ class InPlace:
         Args:
             changes_model: Whether more than the places of models has changed.
         """
-        self._engine.wake_all()
+        wake_all(self._engine)
         self._engine.revisions += changes_model
         self._engine.note_change()
 

@@ -19,6 +19,7 @@ from cartwheel.simulation.models.occupied_space import Space, occupied
 from cartwheel.simulation.models.placement import place_model, with_mimics
 from cartwheel.simulation.models.population import Population
 from cartwheel.simulation.models.resident import Attach
+from cartwheel.simulation.models.waking import keep_awake
 from cartwheel.simulation.run_state import Run
 from cartwheel.simulation.sensing.line_of_sight import in_sight
 from cartwheel.simulation.snapshot import Scene
@@ -220,7 +221,7 @@ class Models(Run):
         if joint < 0:
             speeds = self._place_fixed(name, pose)
         else:
-            self.engine.keep_awake([joint])
+            keep_awake(self.engine, [joint])
             self.engine.place(joint, pose @ entry.description.canonical_pose)
         self._population.separate(name, speeds)
 
@@ -280,7 +281,7 @@ class Models(Run):
             self.engine.joint_id(name, joint): position
             for joint, position in with_mimics(description, positions).items()
         }
-        self.engine.keep_awake(moved)
+        keep_awake(self.engine, moved)
         for index, position in moved.items():
             self.engine.set_joint(index, position)
         self.engine.forward()

@@ -10,6 +10,7 @@ import numpy as np
 from cartwheel.description.model import Joint, Link, RobotDescription
 from cartwheel.geometry import Pose, Vec3, cross, to_wxyz
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.models.waking import keep_awake
 from cartwheel.world.entry import ModelEntry
 from cartwheel.world.joints import limits_of
 
@@ -33,7 +34,7 @@ def place_model(engine: Engine, entry: ModelEntry, pose: Pose, linear: Vec3, ang
         for link in description.links
         if (joint := engine.free_joint(entry.name, link.name)) >= 0
     }
-    engine.keep_awake(places)
+    keep_awake(engine, places)
     _stop(engine, entry)
     for joint, place in places.items():
         carried = _carried(place, pose, linear, angular)
