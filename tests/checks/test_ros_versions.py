@@ -1,7 +1,7 @@
 """Plugins that exist only in ROS 1 or only in ROS 2."""
 
 import pytest
-from tests.corpus.carts import cart, plugin, written
+from tests.corpus.carts import cart, controlled, plugin, written
 
 import cartwheel
 from cartwheel.codes.devices import CONTROLLERS_NOT_FOUND, PLUGIN_OF_OTHER_ROS
@@ -26,6 +26,11 @@ ARM = (
     '</joint><transmission name="t"><type>transmission_interface/SimpleTransmission</type>'
     '<joint name="shoulder"><hardwareInterface>hardware_interface/PositionJointInterface'
     '</hardwareInterface></joint><actuator name="m"/></transmission>'
+)
+
+FIXED = (
+    '<link name="world"/><joint name="floor" type="fixed"><parent link="world"/>'
+    '<child link="base"/></joint>'
 )
 
 
@@ -96,6 +101,46 @@ def test_a_manager_of_the_other_version_comes_before_missing_transmissions(tmp_p
     path.write_text(text[:start] + text[end + len("</transmission>") :])
     (fault,) = [each for each in try_robot(path, standing=0.5).faults if each.test == "controller"]
     assert fault.code is PLUGIN_OF_OTHER_ROS
+
+
+COMMANDED = """robot:
+  states: {type: joint_state_controller/JointStateController, publish_rate: 50}
+  shoulder_position: {type: position_controllers/JointPositionController, joint: shoulder}
+"""
+
+
+@pytest.mark.parametrize(("stated", "wrong"), [(AMENT, True), (CATKIN, False)])
+def test_a_manager_of_the_other_version_moves_nothing_in_gazebo(tmp_path, stated, wrong):
+    """Its controllers work in Cartwheel, which runs both managers."""
+    space = "<robotNamespace>robot</robotNamespace>"
+    path = robot(tmp_path, "libgazebo_ros_control.so", stated, space)
+    (path.parents[1] / "config").mkdir()
+    (path.parents[1] / "config" / "arm.yaml").write_text(COMMANDED)
+    path.write_text(path.read_text().replace('<link name="base">', FIXED + '<link name="base">', 1))
+    verdict = try_robot(path, standing=0.5)
+    assert [each.arrived for each in verdict.reaches] == [True]
+    expected = [("controller", PLUGIN_OF_OTHER_ROS, "file")] if wrong else []
+    assert [(each.test, each.code, each.source) for each in verdict.faults] == expected
+
+
+def test_a_manager_of_the_other_version_beside_one_that_drives_is_no_fault(tmp_path):
+    (tmp_path / "package.xml").write_text(f"<package><name>cart</name>{AMENT}</package>")
+    other = '<gazebo><plugin name="o" filename="libgazebo_ros_control.so"/></gazebo>'
+    path = written(tmp_path, cart(), controlled(tmp_path), other)
+    assert found(path)
+    assert try_robot(path, standing=1.0).good
+
+
+def test_a_drive_of_the_other_version_moves_nothing_in_gazebo(tmp_path):
+    (tmp_path / "package.xml").write_text(f"<package><name>cart</name>{AMENT}</package>")
+    names = "".join(
+        f"<{side}{end}Joint>{side}_joint</{side}{end}Joint>"
+        for side in ("left", "right")
+        for end in ("Front", "Rear")
+    )
+    drive = plugin(more=names).replace("_diff_drive.so", "_skid_steer_drive.so")
+    (fault,) = try_robot(written(tmp_path, cart(), drive), standing=1.0).faults
+    assert (fault.test, fault.code, fault.source) == ("plugin", PLUGIN_OF_OTHER_ROS, "file")
 
 
 def test_plugins_of_one_version_are_simulated_or_unknown():

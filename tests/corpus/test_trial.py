@@ -1740,6 +1740,25 @@ def test_a_description_for_rviz_that_needs_its_arguments_need_not_stand(tmp_path
     assert verdict.good, verdict.faults
 
 
+@pytest.mark.parametrize("simulated", [True, False])
+def test_a_description_of_visuals_for_rviz_needs_no_mass(tmp_path, simulated):
+    spawner = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-urdf -model c"/>'
+    viewer = '<node name="rviz" pkg="rviz" type="rviz"/>'
+    files = {
+        "package.xml": "<package><name>camera</name></package>",
+        "camera.urdf": '<robot name="camera"><link name="base"><visual><geometry>'
+        '<box size="0.1 0.1 0.1"/></geometry></visual></link></robot>',
+        "a.launch": '<launch><param name="robot_description" textfile="$(find camera)/camera.urdf"'
+        f"/>{spawner if simulated else viewer}</launch>",
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    path = tmp_path / "camera.urdf"
+    verdict = try_robot(path, standing=1.0, launches=launches_near(tmp_path))
+    expected = [("load", INERTIA_MISSING), ("stand", BASE_WITHOUT_COLLISION)] * simulated
+    assert [(each.test, each.code) for each in verdict.faults] == expected
+
+
 def test_a_long_robot_that_tilts_a_little_until_it_rests_on_another_part_does_not_rise(tried):
     """A beam of 4 m, whose middle is 0.1 m too low: 0.05 rad lift its root at one end."""
     base = BOX.format(name="base", at="1 0 0", size="0.2 0.4 0.3")

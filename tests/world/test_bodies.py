@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cartwheel as cw
-from cartwheel.codes.world import LOOP_WITHOUT_ROOT
+from cartwheel.codes.world import LOOP_WITHOUT_ROOT, PLANE_NOT_STATIC
 from cartwheel.description import load_text
 from cartwheel.errors import WorldError
 
@@ -24,6 +24,40 @@ CONE = """<sdf version="1.10"><model name="pile"><link name="link">
   <inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>
   <collision name="c"><geometry><cone><radius>0.5</radius><length>1</length></cone></geometry>
   </collision></link></model></sdf>"""
+
+
+HALL = """<sdf version="1.10"><world name="w"><model name="hall">{static}
+  <link name="frame"/>
+  <link name="floor"><pose>0 0 0.3 0 0 0</pose>
+    <collision name="c"><geometry><plane/></geometry></collision></link>
+  <joint name="held" type="{held}"><parent>{parent}</parent><child>{child}</child></joint>
+  <joint name="laid" type="{laid}"><parent>frame</parent><child>floor</child>
+    <axis><xyz>0 0 1</xyz></axis></joint>
+  </model>
+  <model name="crate"><pose>0 0 0.45 0 0 0</pose><link name="link">
+    <collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
+  </link></model></world></sdf>"""
+HELD = {"static": "", "parent": "world", "child": "frame", "held": "fixed", "laid": "fixed"}
+
+
+@pytest.mark.parametrize(
+    "changed", [{}, {"parent": "frame", "child": "world"}, {"static": "<static>1</static>"}]
+)
+def test_a_plane_that_fixed_joints_hold_to_the_world_is_a_floor(tmp_path, changed) -> None:
+    path = tmp_path / "hall.world"
+    path.write_text(HALL.format(**(HELD | changed)))
+    with cw.World(path) as world:
+        world.run(1.0)
+        assert world.model("crate").pose.z == pytest.approx(0.4, abs=2e-3)
+
+
+@pytest.mark.parametrize("changed", [{"held": "revolute"}, {"laid": "revolute"}])
+def test_a_plane_of_a_link_that_can_move_is_an_error(tmp_path, changed) -> None:
+    path = tmp_path / "hall.world"
+    path.write_text(HALL.format(**(HELD | changed)))
+    with pytest.raises(WorldError) as caught:
+        cw.World(path)
+    assert caught.value.code is PLANE_NOT_STATIC
 
 
 @pytest.mark.parametrize("axis", ["0 0 1", "1 0 0", "1 1 1"])

@@ -57,7 +57,7 @@ LOOP_WITHOUT_ROOT = Code(
     "CW617", "loop-without-root", "error", "a link is part of a loop of joints without a root"
 )
 PLANE_NOT_STATIC = Code(
-    "CW618", "plane-not-static", "error", "an infinite plane is part of a model that moves"
+    "CW618", "plane-not-static", "error", "an infinite plane is part of a link that can move"
 )
 MODEL_NOT_BUILT = Code("CW619", "model-not-built", "error", "the physics engine rejects a model")
 PHYSICS_SETTING_IGNORED = Code(

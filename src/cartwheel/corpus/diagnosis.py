@@ -118,11 +118,12 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
 
     A description without plugins and sensors that no launch file starts in Gazebo may be one for
     other programs, in which links need no mass. If it falls because no link has a collision, it is
-    no robot for Gazebo in any case, and Gazebo reports the mass first.
+    no robot for Gazebo, and Gazebo reports the mass first, unless its launch file is for RViz.
     """
     started = verdict.launch is not None and verdict.launch.simulated
     shapes = any(link.collisions for link in description.links)
     falls = verdict.stand is not None and falls_through(verdict.stand) and not shapes
+    falls = falls and not _need_not_stand(verdict, description)
     if not (verdict.movers or has_devices(description) or started or falls):
         return None
     if coded(description.diagnostics, LEFT_OUT) is not None:

@@ -110,7 +110,7 @@ def missing_movers(
                 if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
                 and each.values.get("plugin") == tag.filename
             )
-            reason = reason or other_tags(description, tag)
+            reason = reason or other_ros(description, tag) or other_tags(description, tag)
         elif all_moves and not is_own_mover(tag):
             # The report lists it among the missing plugins.
             continue
@@ -125,6 +125,11 @@ def missing_movers(
             yield Fault(test="plugin", subject=short_name(tag.filename), reason=reason)
     for name, reason in ignored_movers(description):
         yield Fault(test="plugin", subject=name, reason=reason)
+    # Cartwheel runs the plugins of both versions, so the tests do not show that one is missing.
+    loads = [(tag, other_ros(description, tag)) for tag in managers(description)]
+    if all(reason is not None for _, reason in loads):
+        for tag, reason in loads:
+            yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
     refused = {
         each.values.get("controller"): each
         for each in said

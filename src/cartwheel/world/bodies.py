@@ -239,13 +239,14 @@ class BodyBuilder:
             # A ball caster on a joint about the vertical does not roll.
             spins = axle is not None and tread is None and not branch.driven and not branch.carried
             low = lowest(shape, there) if spins else None
-            if isinstance(shape, Plane) and not entry.description.static:
+            if isinstance(shape, Plane) and moves:
                 raise WorldError(
-                    f'collision "{collision.name}" is an infinite plane, which must be static',
+                    f'collision "{collision.name}" is an infinite plane, but its link can move',
                     code=world_codes.PLANE_NOT_STATIC,
                     origin=collision.origin,
                     values={"collision": collision.name},
-                    hint="Use a flat box instead, or <static>true</static>.",
+                    hint="Use a flat box instead, <static>true</static>, or a fixed joint to the "
+                    "world.",
                 )
             # The base of an arm uses its convex hull, like the other links; nothing is placed
             # inside it.
