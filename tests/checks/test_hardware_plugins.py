@@ -80,3 +80,155 @@ def test_transmissions_need_the_plugin_that_runs_controllers(
     ]
     assert found == [("controller", "file")] * reported
     assert not reported or verdict.outcome == "file"
+
+
+CLASSIC, GZ = "gazebo_ros2_control", "gz_ros2_control"
+SYSTEM = {CLASSIC: f"{CLASSIC}/GazeboSystem", GZ: f"{GZ}/GazeboSimSystem"}
+FILE = {CLASSIC: f"lib{CLASSIC}.so", GZ: f"{GZ}-system"}
+
+
+def managed(hardware, gazebo=CLASSIC):
+    return arm(MANAGER.format(file=FILE[gazebo]), hardware=hardware)
+
+
+def unloaded(path, **more):
+    found = cartwheel.check(path, **more).findings
+    return [each for each in found if each.code is HARDWARE_WITHOUT_PLUGIN]
+
+
+def exported(folder, hardware, base):
+    """A repository that exports a class."""
+    (folder / ".gitignore").write_text("")
+    (folder / "package.xml").write_text("<package><name>arm</name></package>")
+    (folder / "plugins.xml").write_text(
+        f'<library path="arm"><class name="{hardware}" base_class_type="{base}"/></library>'
+    )
+
+
+@pytest.mark.parametrize(
+    ("hardware", "gazebo", "loaded"),
+    [
+        (SYSTEM[CLASSIC], CLASSIC, True),
+        (SYSTEM[GZ], GZ, True),
+        ("ign_ros2_control/IgnitionSystem", GZ, True),
+        (SYSTEM[GZ], CLASSIC, False),
+        (SYSTEM[CLASSIC], GZ, False),
+        (f"{GZ}/GazeboSystem", GZ, False),
+        ("own_arm/ArmHardware", CLASSIC, False),
+        ("own_arm/ArmHardware", GZ, False),
+        ("mock_components/GenericSystem", CLASSIC, False),
+        ("own_arm_gazebo/ArmSystem", CLASSIC, True),
+        ("simple_arm/ArmSystem", CLASSIC, False),
+    ],
+)
+def test_gazebo_loads_only_hardware_for_its_own_plugin(tmp_path, hardware, gazebo, loaded):
+    path = tmp_path / "arm.urdf"
+    path.write_text(managed(hardware, gazebo))
+    found = unloaded(path)
+    assert [each.values["hardware"] for each in found] == [hardware] * (not loaded)
+    assert all(each.severity == "warning" for each in found)
+
+
+@pytest.mark.parametrize(
+    ("base", "loaded"),
+    [
+        ("hardware_interface::SystemInterface", False),
+        (f"{CLASSIC}::GazeboSystemInterface", True),
+        (f"{GZ}::GazeboSimSystemInterface", True),
+    ],
+)
+@pytest.mark.parametrize("name", ["own_arm/ArmHardware", "own_arm_sim/Arm"])
+def test_the_base_class_that_the_repository_exports_decides(tmp_path, name, base, loaded):
+    exported(tmp_path, name, base)
+    path = tmp_path / "arm.urdf"
+    path.write_text(managed(name))
+    assert bool(unloaded(path)) is not loaded
+
+
+def test_joints_of_the_real_robot_that_are_also_listed_for_gazebo_move(tmp_path):
+    path = tmp_path / "arm.urdf"
+    real = ros2_system(ros2_joint("beam_joint")).replace(SYSTEM[GZ], "own_arm/ArmHardware")
+    both = managed(SYSTEM[GZ], GZ).replace("<ros2_control", real + "<ros2_control", 1)
+    path.write_text(both)
+    assert not unloaded(path)
+    path.write_text(
+        both.replace('<joint name="beam_joint"><command', '<joint name="x"><command', 1)
+    )
+    assert [each.values["hardware"] for each in unloaded(path)] == ["own_arm/ArmHardware"]
+
+
+def test_the_hardware_of_the_real_robot_stands_still_in_gazebo(tmp_path):
+    parameters = tmp_path / "c.yaml"
+    parameters.write_text(
+        "controller_manager: {ros__parameters: {move: "
+        "{type: position_controllers/JointGroupPositionController}}}\n"
+        "move: {ros__parameters: {joints: [beam_joint]}}\n"
+    )
+    path = tmp_path / "arm.urdf"
+    plugin = f'<plugin filename="{FILE[CLASSIC]}" name="c"><parameters>{parameters}</parameters>'
+    path.write_text(arm(plugin + "</plugin>", hardware="own_arm/ArmHardware"))
+    verdict = try_robot(path, standing=1.0)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("controller", HARDWARE_WITHOUT_PLUGIN, "file")
+    # The joint is driven here nevertheless, which shows other faults.
+    assert verdict.reaches
+    assert verdict.should_move
+    assert not verdict.moves
+    path.write_text(path.read_text().replace("own_arm/ArmHardware", SYSTEM[CLASSIC]))
+    assert try_robot(path, standing=1.0).good
+
+
+def selected(folder, *, included=False):
+    """A xacro with an argument for the simulation, which is off by default."""
+    start, end = "<ros2_control", "</ros2_control>"
+    text = managed("own_arm/ArmHardware")
+    at, to = text.index(start), text.index(end) + len(end)
+    real = text[at:to]
+    if included:
+        (folder / "real.xacro").write_text(
+            f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{real}</robot>'
+        )
+        real = '<xacro:include filename="real.xacro"/>'
+    simulated = text[at:to].replace("own_arm/ArmHardware", SYSTEM[CLASSIC])
+    path = folder / "arm.urdf.xacro"
+    path.write_text(
+        (
+            text[:at]
+            + f'<xacro:if value="$(arg sim)">{simulated}</xacro:if>'
+            + f'<xacro:unless value="$(arg sim)">{real}</xacro:unless>'
+            + text[to:]
+        ).replace(
+            '<robot name="arm">',
+            '<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+            '<xacro:arg name="sim" default="false"/>',
+        )
+    )
+    return path
+
+
+def launched(folder, argument):
+    """A launch file that starts Gazebo, with an argument of the xacro."""
+    (folder / "package.xml").write_text("<package><name>arm</name></package>")
+    (folder / "arm.launch").write_text(
+        '<launch><param name="robot_description" '
+        f'command="xacro $(find arm)/arm.urdf.xacro {argument}"/>{SPAWN}</launch>'
+    )
+
+
+@pytest.mark.parametrize("included", [False, True])
+def test_hardware_that_an_argument_selects_is_a_note_unless_gazebo_is_started_with_it(
+    tmp_path, included
+):
+    path = selected(tmp_path, included=included)
+    (note,) = unloaded(path)
+    assert note.severity == "info"
+    assert not unloaded(path, arguments={"sim": "true"})
+    assert not [each for each in try_robot(path, standing=1.0).faults if each.reason == note]
+    launched(tmp_path, "sim:=true")
+    (note,) = unloaded(path)
+    assert note.severity == "info"
+    launched(tmp_path, "")
+    (warning,) = unloaded(path)
+    assert warning.severity == "warning"
+    codes = [fault.code for fault in try_robot(path, standing=1.0).faults]
+    assert HARDWARE_WITHOUT_PLUGIN in codes

@@ -24,6 +24,7 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.launches import (
     LaunchSearch,
     OwnLaunches,
+    chosen,
     needs_expansion,
     unexpanded,
 )
@@ -147,6 +148,8 @@ def _subject(
         control=control,
         launched=launched,
         unexpanded=tuple(plain),
+        arguments=opened.arguments,
+        find_launch=lambda: chosen(file, search(file).launches),
     )
     for robot in robots:
         robot.controlled = controlled_sides(subject, robot)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.launches import LaunchUse
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.selection import Selection
 from cartwheel.errors import Diagnostic, Origin
@@ -48,6 +49,10 @@ class Subject:
 
     unexpanded: Sequence[Diagnostic] = ()
     """About a launch file that does not expand the description."""
+    arguments: Mapping[str, str] = field(default_factory=dict)
+    """Arguments of the xacro, including defaults."""
+    find_launch: Callable[[], LaunchUse | None] = lambda: None
+    """Returns the launch file that starts the description."""
 
     @property
     def is_urdf(self) -> bool:
@@ -70,6 +75,11 @@ class Subject:
         """Each readable xacro file before expansion."""
         trees = (xml.readable_file(Path(file)) for file in self.files)
         return tuple(tree for tree in trees if tree is not None)
+
+    @cached_property
+    def launch(self) -> LaunchUse | None:
+        """The launch file that starts the description, if there is one."""
+        return self.find_launch()
 
     @cached_property
     def macros(self) -> frozenset[str]:

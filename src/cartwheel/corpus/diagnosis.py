@@ -10,7 +10,11 @@ from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, drives_on, flywheel, is_free
 from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
-from cartwheel.corpus.missing_movers import missing_movers, unmanaged, unmanaged_transmissions
+from cartwheel.corpus.missing_movers import (
+    missing_movers,
+    unmanaged_hardware,
+    unmanaged_transmissions,
+)
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -91,7 +95,12 @@ def _faults(
         fault.subject: fault
         for fault in reversed([*missing_movers(verdict, description, held=held)])
     }
-    missing |= dict(unmanaged(verdict, description, findings))
+    unmanaged = dict(unmanaged_hardware(verdict, description, findings))
+    if unmanaged:
+        # What is driven here instead does not matter.
+        instead = (devices.HARDWARE_NOT_SIMULATED, devices.HARDWARE_UNKNOWN)
+        missing = {name: fault for name, fault in missing.items() if fault.code not in instead}
+    missing |= unmanaged
     missing |= {each.subject: each for each in unmanaged_transmissions(verdict, description)}
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)

@@ -20,6 +20,7 @@ from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
+from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros_only import other_ros, other_tags
 from cartwheel.errors import Diagnostic
 
@@ -44,18 +45,31 @@ _ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
 """Causes for which a controller does not start in ROS either, although another one works."""
 
 
-def unmanaged(
+def unmanaged_hardware(
     verdict: Verdict,
     description: RobotDescription,
     findings: Callable[[], Sequence[Diagnostic]],
 ) -> Iterator[tuple[str, Fault]]:
-    """Hardware for Gazebo of a robot that nothing moves because no plugin runs it, by name."""
-    if not description.ros2_control or verdict.movers:
+    """Hardware of a robot that no plugin runs in Gazebo, by name: that for Gazebo, if nothing else
+    moves the robot, and that which the robot's plugin does not load.
+    """
+    if not description.ros2_control or (verdict.movers and not _stands_still(description)):
         return
     for each in findings():
-        if each.code is devices.HARDWARE_WITHOUT_PLUGIN:
+        if each.code is devices.HARDWARE_WITHOUT_PLUGIN and each.severity != "info":
             name = str(each.values["name"])
             yield name, Fault(test="controller", subject=name, reason=each)
+
+
+def _stands_still(description: RobotDescription) -> bool:
+    """Whether Gazebo loads no hardware of a robot."""
+    commanded = [
+        system
+        for system in description.ros2_control
+        if any(joint.find("command_interface") for joint in system.find_all("joint"))
+    ]
+    lost = [system for system, _ in unloaded_systems(description)]
+    return bool(lost) and all(any(each is one for one in lost) for each in commanded)
 
 
 def unmanaged_transmissions(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:

@@ -14,6 +14,7 @@ from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros2_control.components import HardwareComponents
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
+from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerFiles,
@@ -28,6 +29,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     JointInterfaces,
     hardware_of,
     no_joints,
+    package_system,
     ros2_control,
     simulated_systems,
     unknown_joints,
@@ -188,22 +190,24 @@ class Ros2Control(ControlPlugin):
 
     def _check_system(self, system: Element) -> None:
         name = hardware_of(system)
-        own = {each.partition("/")[0]: each for each in SYSTEMS}
-        package = name.partition("/")[0] if name else ""
-        if package in own and name not in SYSTEMS:
+        own = package_system(name)
+        if own and name not in SYSTEMS:
             self.warn(
                 devices.HARDWARE_UNKNOWN,
-                f'<hardware>: the package "{package}" does not contain "{name}", so {own[package]} '
-                "is used; Gazebo would start no controller",
+                f'<hardware>: the package "{name.partition("/")[0]}" does not contain "{name}", so '
+                f"{own} is used; Gazebo would start no controller",
                 severity="error",
                 at=system.origin,
-                values={"hardware": name, "meant": own[package]},
+                values={"hardware": name, "meant": own},
             )
         elif name and name not in SYSTEMS:
+            skipped = any(each is system for each, _ in unloaded_systems(self.part.description))
+            why = "is not loaded in Gazebo, where its joints do not move; here, they"
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
                 f'the hardware "{name}" of <ros2_control name="{system.attribute("name") or ""}"> '
-                f"is not simulated, so its joints are driven as with {SYSTEMS[0]}",
+                f"{why if skipped else 'is not simulated, so its joints'} are driven as with "
+                f"{SYSTEMS[0]}",
                 at=system.origin,
                 values={"hardware": name},
             )

@@ -139,14 +139,20 @@ def hardware_of(system: Element) -> str:
     return plugin.text.strip() if plugin is not None else ""
 
 
+def package_system(hardware: str) -> str:
+    """Returns the simulated hardware in the package of a hardware plugin; empty if it has none."""
+    own = {each.partition("/")[0]: each for each in SYSTEMS}
+    return own.get(hardware.replace("::", "/").partition("/")[0], "")
+
+
 def simulated_systems(description: RobotDescription) -> list[Element]:
     """Returns the ``<ros2_control>`` tags with simulated hardware; all tags if there are none."""
     simulated = [each for each in description.ros2_control if hardware_of(each) in SYSTEMS]
     return simulated or list(description.ros2_control)
 
 
-def _loaded_by(description: RobotDescription) -> frozenset[str]:
-    """The simulated hardware that the description's plugin of ros2_control loads."""
+def loaded_by(description: RobotDescription) -> frozenset[str]:
+    """Returns the simulated hardware that the description's plugin of ros2_control loads."""
     classic, *others = SYSTEMS
     names = [each.filename for each in description.plugins]
     found = {classic} if any("gazebo_ros2_control" in each for each in names) else set[str]()
@@ -169,7 +175,7 @@ def ros2_control(
     notes: list[Diagnostic] = []
     # Hardware that the plugin of this Gazebo cannot load is skipped there, so the other's joints
     # count if both list them.
-    loads = _loaded_by(description)
+    loads = loaded_by(description)
     systems = sorted(simulated_systems(description), key=lambda each: hardware_of(each) in loads)
     for system in systems:
         for element in system.find_all("joint"):

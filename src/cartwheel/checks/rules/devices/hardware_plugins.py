@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import PurePath
 
+from cartwheel.checks import nodes
+from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.elements.node import Node
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.dialects.ros_control.interfaces import MANAGERS, hardware_of
-from cartwheel.errors import Diagnostic
+from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
+from cartwheel.dialects.ros_control.interfaces import (
+    MANAGERS,
+    SYSTEMS,
+    hardware_of,
+    loaded_by,
+    package_system,
+)
+from cartwheel.errors import Diagnostic, Origin
+
+_CONDITIONS = ("xacro:if", "xacro:unless")
+"""Elements of a xacro whose contents depend on its arguments."""
 
 
 @rule(devices_codes.HARDWARE_WITHOUT_PLUGIN)
 def hardware_without_plugin(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         description = robot.description
+        yield from _unloaded(subject, robot)
         if any("control" in short_name(tag.filename) for tag in description.plugins):
             continue  # perhaps a controller manager under another name
         for system in description.ros2_control:
@@ -30,3 +45,96 @@ def hardware_without_plugin(subject: Subject) -> Iterator[Diagnostic]:
                 values={"hardware": hardware, "plugin": file, "name": name},
                 hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
             )
+
+
+def _unloaded(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
+    """Hardware that the robot's plugin does not load.
+
+    It is a note if an argument of the xacro decides about it, and no launch file starts Gazebo with
+    the arguments that the user states.
+    """
+    for system, manager in unloaded_systems(robot.description):
+        hardware, name = hardware_of(system), system.attribute("name") or ""
+        element = system.find("hardware/plugin") or system
+        chosen = _depends(subject, element.origin) and not _is_started(subject)
+        own = package_system(hardware)
+        meant = own if own in loaded_by(robot.description) else ""
+        why = f'"{manager.filename}" does not load it'
+        if own and hardware != own:
+            package = hardware.replace("::", "/").partition("/")[0]
+            why = f'the package "{package}" does not contain it'
+        hint = f"In Gazebo, use {_systems(robot)}."
+        if chosen:
+            hint = "If an argument selects the hardware for Gazebo, pass it."
+        yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
+            f'<ros2_control name="{name}"> has the hardware "{hardware}", but {why}, so no '
+            "controller moves its joints in Gazebo",
+            severity="info" if chosen else "warning",
+            origin=element.origin,
+            values={
+                "hardware": hardware,
+                "plugin": manager.filename,
+                "name": name,
+                "meant": meant,
+                "unloaded": True,
+            },
+            hint=hint,
+            mark=hardware,
+        )
+
+
+def _systems(robot: Robot) -> str:
+    """The hardware that the robot's plugin loads."""
+    loaded = loaded_by(robot.description)
+    return " or ".join(f"<plugin>{name}</plugin>" for name in SYSTEMS if name in loaded)
+
+
+def _is_started(subject: Subject) -> bool:
+    """Whether a launch file certainly starts Gazebo with the arguments of the xacro."""
+    use = subject.launch
+    if use is None or not use.simulated or use.unknown:
+        return False
+    stated = subject.arguments
+    return all(stated.get(name, value) == value for name, value in use.arguments.items())
+
+
+def _depends(subject: Subject, origin: Origin) -> bool:
+    """Whether other arguments may replace an element: a condition or an expression decides about
+    it, about a macro call that produces it, or about the include of its file.
+    """
+    places = {(origin.file, origin.line)}
+    for call in origin.stack:
+        file, _, line = call.partition(" ")[0].rpartition(":")
+        if line.isdigit():
+            places.add((file, int(line)))
+    names = {PurePath(file).name for file, _ in places}
+    while True:
+        found = False
+        for node, decided in _with_conditions(subject):
+            here = (node.origin.file, node.origin.line) in places
+            included = node.tag == "xacro:include" and _included(node) in names
+            if (here or included) and (decided or "$(arg" in node.attributes.get("filename", "")):
+                return True
+            if here and "$" in node.text:
+                return True
+            if included and PurePath(node.origin.file).name not in names:
+                # What decides about the include of a file decides about the files it includes.
+                names.add(PurePath(node.origin.file).name)
+                found = True
+        if not found:
+            return False
+
+
+def _with_conditions(subject: Subject) -> Iterator[tuple[Node, bool]]:
+    """All elements as written, each with whether it is inside a condition."""
+    waiting = [(tree, False) for tree in subject.written]
+    while waiting:
+        node, decided = waiting.pop()
+        yield node, decided
+        decided = decided or node.tag in _CONDITIONS
+        waiting.extend((child, decided) for child in node.children)
+
+
+def _included(node: Node) -> str:
+    """The name of an included file, without its folder."""
+    return PurePath(nodes.text_of(node, "filename")).name

@@ -1,0 +1,83 @@
+"""Hardware of ``<ros2_control>`` that Gazebo's plugins do not load, such as that of the real robot.
+
+The plugins load only classes that are derived from an interface of their own package. They report
+any other class and skip it, so that its joints have no interfaces. Source: gazebo_ros2_control and
+gz_ros2_control.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from cartwheel.description.files.plugin_xml import base_class
+from cartwheel.description.model import Element, PluginTag, RobotDescription
+from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.ros_control.interfaces import (
+    SYSTEMS,
+    hardware_of,
+    loaded_by,
+    package_system,
+)
+
+_MANAGER = re.compile(r"(gazebo|gz|ign)_ros2_control")
+_DERIVED = re.compile(r"gazebo|ignition|(?<![a-z])gz", re.IGNORECASE)
+"""Names of the interfaces from which hardware for Gazebo is derived."""
+_FOR_SIMULATION = re.compile(
+    r"gazebo|(?<![a-z])(?:gz|ign)(?![a-z])|ignition|sim(?!pl)", re.IGNORECASE
+)
+"""Names of hardware that may be for Gazebo."""
+
+
+def unloaded_systems(robot: RobotDescription) -> list[tuple[Element, PluginTag]]:
+    """The ``<ros2_control>`` tags whose hardware the robot's plugin in Gazebo does not load.
+
+    Hardware that may be for Gazebo, by the interface from which it is derived or by its name, is
+    not among them, nor is hardware whose joints are also those of hardware that is loaded.
+
+    Returns:
+        The tags, each with the plugin.
+    """
+    manager = next((tag for tag in robot.plugins if _MANAGER.search(tag.filename)), None)
+    if manager is None or any(_may_manage(tag) for tag in robot.plugins):
+        return []
+    loads = loaded_by(robot)
+    served = {
+        name
+        for system in robot.ros2_control
+        if hardware_of(system) in loads
+        for name in _joints(system)
+    }
+    return [
+        (system, manager)
+        for system in robot.ros2_control
+        if _joints(system) - served
+        and hardware_of(system) not in loads
+        and not _may_be_loaded(hardware_of(system), Path(robot.origin.file))
+    ]
+
+
+def _may_manage(tag: PluginTag) -> bool:
+    """Whether an unsupported plugin may run controllers, with hardware of its own."""
+    return "control" in short_name(tag.filename) and plugin_named(tag.filename) is None
+
+
+def _joints(system: Element) -> set[str]:
+    """The joints of a system that can be commanded."""
+    return {
+        (joint.attribute("name") or "").strip()
+        for joint in system.find_all("joint")
+        if joint.find("command_interface") is not None
+    }
+
+
+def _may_be_loaded(hardware: str, file: Path) -> bool:
+    """Whether hardware that is not simulated may be for Gazebo."""
+    if not hardware or "$" in hardware:
+        return True
+    if hardware in SYSTEMS or package_system(hardware):
+        return False
+    base = base_class(file, hardware)
+    if base:
+        return bool(_DERIVED.search(base))
+    return bool(_FOR_SIMULATION.search(hardware))
