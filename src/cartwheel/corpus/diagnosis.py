@@ -8,7 +8,7 @@ from dataclasses import replace
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.drive_causes import cause_of_drive, drives_on, flywheel, is_free
-from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through
+from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through, lost_wheel
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
 from cartwheel.corpus.missing_movers import (
     missing_movers,
@@ -25,6 +25,18 @@ _HEAVY = 1000.0
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
 """Lengths in other units, with which shapes are inside each other or kilometres long."""
 _NOT_EXPANDED = frozenset({files.DESCRIPTION_NOT_EXPANDED})
+_WITHOUT_WHEELS = frozenset(
+    {
+        robot.BODY_ON_GROUND,
+        robot.CASTER_FRICTION,
+        robot.PLANAR_FRICTION,
+        robot.SKID_STEERING,
+        robot.UNBALANCED,
+        robot.WHEELS_BRAKED,
+        robot.WHEELS_OFF_GROUND,
+    }
+)
+"""What follows from driven wheels without collisions, or is not as predicted without them."""
 _JOINTS = frozenset(
     {
         robot.LIMIT_ZERO,
@@ -162,8 +174,10 @@ def _measured(
     children = {joint.name: joint.child for joint in description.joints}
     said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
+    wheel = lost_wheel(said, description, verdict.driven) if verdict.drives else None
     if verdict.stand is not None and not (verdict.stands or _need_not_stand(verdict, description)):
-        fallen = cause_of_fall(verdict.stand, description, (*said, *findings()), idle)
+        everything = (*said, *findings())
+        fallen = cause_of_fall(verdict.stand, description, everything, idle, wheel)
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:
         reason = coded(said, frozenset({world.OPENGL_MISSING}))
@@ -172,7 +186,9 @@ def _measured(
         yield Fault(test="drive", subject=subject, reason=reason)
 
     def explaining(test: Test, subject: str) -> list[Diagnostic]:
-        return _explaining((*said, *findings()), verdict, description, (test, subject))
+        found = _explaining((*said, *findings()), verdict, description, (test, subject))
+        # A robot without its wheels rests on what it drags.
+        return found if wheel is None else [e for e in found if e.code not in _WITHOUT_WHEELS]
 
     pushed = any(drive.passes for drive in verdict.drives)
     for drive in verdict.drives:
@@ -180,7 +196,7 @@ def _measured(
             continue
         forward: Diagnostic | None = None
         # A robot that fell cannot drive, nor one that its own wheels throw over.
-        unsteady = fallen or flywheel((*said, *findings()), description)
+        unsteady = wheel or fallen or flywheel((*said, *findings()), description)
         if not drive.follows:
             found = explaining("drive", drive.topic)
             forward = cause_of_drive(found, 1.0 + drive.error)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence, Set
 
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.wheels import wheel_axis, wheel_links
 from cartwheel.codes import files, robot
 from cartwheel.corpus.faults import coded, most_severe
 from cartwheel.corpus.verdict import Stand
@@ -45,6 +47,8 @@ _LIGHT = re.compile(
     r"|sensor|material|colou?r|(?<![a-z])(?:zed|imu|gps|sick|astra)(?![a-z])"
 )
 """Names of parts that carry no robot: sensors and materials."""
+_UPRIGHT = 0.7
+"""Smallest vertical component of the axis of what is no wheel."""
 _FALLEN = 1.0
 """m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
 ground."""
@@ -55,6 +59,7 @@ def cause_of_fall(
     description: RobotDescription,
     found: Sequence[Diagnostic],
     idle: Diagnostic | None,
+    wheel: Diagnostic | None = None,
 ) -> Diagnostic | None:
     """Why a robot does not stand.
 
@@ -64,10 +69,11 @@ def cause_of_fall(
         found: Diagnostics of the run and of `cartwheel check`.
         idle: The reason why no controller holds the joints, apart from those that only publish;
             None if one does or none is needed.
+        wheel: See `lost_wheel`.
     """
     lost = next((each for each in found if _is_body_lost(each, description)), None)
-    if lost is not None:
-        return lost
+    if lost is not None or wheel is not None:
+        return lost or wheel
     limp = _limp(found, description)
     reasons = [each for each in found if _explains_fall(each) and not _is_carried(each, limp)]
     if idle is not None:
@@ -86,6 +92,44 @@ def cause_of_fall(
         # masses of all links.
         reasons = [each for each in reasons if each.code not in _ABSENT | {robot.INERTIA_MISSING}]
     return most_severe(reasons) or idle
+
+
+def lost_wheel(
+    found: Sequence[Diagnostic], description: RobotDescription, driven: Set[str]
+) -> Diagnostic | None:
+    """Why a driven wheel has no collision although the description contains one, such as a missing
+    mesh. None if all driven wheels have one, or none is written.
+
+    Args:
+        found: Diagnostics of the run.
+        description: The robot.
+        driven: The joints that plugins and controllers drive.
+    """
+    body = Robot(description, None)
+    lost: dict[str, None] = {}
+    for joint in description.joints:
+        if joint.name not in driven or not joint.turns or joint.child not in body.placed:
+            continue
+        links = wheel_links(body, joint)
+        # A propeller turns about the vertical.
+        if abs(wheel_axis(body, joint)[2]) < _UPRIGHT and not any(map(body.collisions.get, links)):
+            lost |= dict.fromkeys(links)
+    return most_severe(
+        each
+        for each in found
+        if each.values.get("left_out") == "collision" and _link_of(each, description) in lost
+    )
+
+
+def _link_of(each: Diagnostic, description: RobotDescription) -> str:
+    """The link of a shape that is left out; in SDF, the one that begins above it."""
+    if "link" in each.values or each.origin is None:
+        return str(each.values.get("link", ""))
+    file, line = each.origin.file, each.origin.line
+    above = [
+        link for link in description.links if link.origin.file == file and link.origin.line <= line
+    ]
+    return max(above, key=lambda link: link.origin.line).name if above else ""
 
 
 def falls_through(stand: Stand) -> bool:
