@@ -321,6 +321,17 @@ def test_a_body_moved_as_it_falls_asleep_falls(make, how):
     assert falls(world, lift) == [FALLEN] * len(RESTS)
 
 
+def test_a_body_held_in_the_air_falls_when_it_is_let_go(make):
+    """As the web interface holds a dragged model, in a simulation that is as slow as its images."""
+    world = make.world(make.box("cup", (0.1, 0.1, 0.1), pose=Pose((0, 0, 0.05))))
+    for _ in range(40):
+        world.model("cup").pose = Pose((0, 0, 1))
+        world.run(DEFAULT_STEP)
+    world.model("cup").pose = Pose((0, 0, 1))
+    world.run(FALL * DEFAULT_STEP)
+    assert 1 - world.model("cup").pose.z == FALLEN
+
+
 @pytest.mark.parametrize("static", [False, True])
 def test_a_body_that_falls_asleep_as_its_support_is_moved_falls(make, static):
     table = make.box("table", (1, 1, 0.5), pose=Pose((0, 0, 0.25)), static=static)
