@@ -167,17 +167,24 @@ class Page:
         return callback
 
     def on_value(
-        self, function: Callable[[Any, Any], object]
+        self,
+        function: Callable[[Any, Any], object],
+        *,
+        read: Callable[[Any], object] = lambda control: control.value,
     ) -> Callable[[Any], Coroutine[Any, Any, None]]:
         """Like `on`, for `function(event, value)` with the control's value at the time of the
         event.
 
         When the page's thread runs the function, a panel that follows the simulation may have reset
-        the control.
+        the control, or the user may have used it again.
+
+        Args:
+            function: The function.
+            read: Returns the value of a control, or the pose of a gizmo; called on viser's thread.
         """
 
         async def callback(event: Any) -> None:
-            value = event.target.value
+            value = read(event.target)
             self.post(
                 lambda: _is_removed(event) or function(event, value),
                 client=getattr(event, "client_id", None),
@@ -279,8 +286,11 @@ class Page:
     def _connected(self, client: Any, toggles: str) -> None:
         self._toggles[client.client_id] = toggles
         self.clients |= {client.client_id}
-        self._pulses[client.client_id] = client.gui.add_html(_pulse(0))
-        self.on_clients()
+        # A browser must not show a control before its callback is set: viser ignores its use until
+        # then.
+        with client.atomic():
+            self._pulses[client.client_id] = client.gui.add_html(_pulse(0))
+            self.on_clients()
 
     def _disconnected(self, client: Any) -> None:
         self.clients -= {client.client_id}

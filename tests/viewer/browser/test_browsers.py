@@ -7,18 +7,22 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import pytest
+import viser
 from tests.viewer.browsing import browsing
 from tests.viewer.conftest import TWIST, eventually, new_page
 
 import cartwheel as cw
+from cartwheel.geometry import Pose
 from cartwheel.messages import from_dict
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.camera import CameraPanel
 from cartwheel.viewer.panels.topics import TopicsPanel
 from cartwheel.viewer.panels.world import WorldPanel
+from cartwheel.viewer.scene_view import pose_in
 
 GO, TURN, STOP = (0.5, 0.0), (0.0, 1.0), (0.0, 0.0)
 
@@ -161,24 +165,85 @@ def test_a_browser_keeps_its_toggles(fresh):
         assert not fresh.viewer._desk.stage.seats[number].display.collision
 
 
+def select_post(browser):
+    """Selects the post, and returns when the gizmo is there."""
+    change(browser, "post", True)
+    browser.hear(lambda m: m["type"] == "TransformControlsMessage" and m["name"] == "/gizmo")
+
+
+def drag(browser, number, phase, **more):
+    """Sends what a page sends of a drag: "DragStart", "Update" with a place, or "DragEnd"."""
+    target = {"name": "/gizmo", "owner": str(number)}
+    browser.send({"type": f"TransformControls{phase}Message", **target, **more})
+
+
+def lift(browser, number, pose):
+    """Drags the post 1 m up."""
+    drag(browser, number, "DragStart")
+    drag(browser, number, "Update", wxyz=[1, 0, 0, 0], position=[pose.x, pose.y, 1.0])
+
+
 def test_what_a_browser_holds_in_the_air_falls_when_it_is_gone(fresh):
     with seated(fresh) as (browser, number):
-        world = fresh.viewer._desk.panel(WorldPanel, number)
-        change(browser, "post", True)
-        eventually(lambda: world._gizmo is not None, what="the gizmo")
-        drag = {"name": "/gizmo", "owner": str(number)}
-        browser.send({"type": "TransformControlsDragStartMessage", **drag})
-        pose = fresh.pose("post")
-        browser.send(
-            {
-                "type": "TransformControlsUpdateMessage",
-                **drag,
-                "wxyz": [1, 0, 0, 0],
-                "position": [pose.x, pose.y, 1.0],
-            }
-        )
+        select_post(browser)
+        lift(browser, number, fresh.pose("post"))
         eventually(lambda: fresh.pose("post").z > 0.9, what="the post in the air")
     eventually(lambda: fresh.pose("post").z < 0.05, what="the fall")
+
+
+@pytest.mark.parametrize("ends", [False, True])
+def test_a_drag_is_not_lost_while_the_page_is_busy(fresh, ends):
+    """The gizmo follows the model until the page's thread learns of the drag."""
+    fresh.ask(fresh.simulation.pause)
+    go_on = threading.Event()
+    moved = Pose((2.4, 0.5, 0.0))
+
+    def waits():
+        snapshot = fresh.viewer._slot
+        return snapshot is not None and pose_in(snapshot, "post").y == pytest.approx(0.5)
+
+    with seated(fresh) as (browser, number):
+        select_post(browser)
+        settle(fresh)
+        gizmo = fresh.viewer._desk.panel(WorldPanel, number)._gizmo
+        fresh.viewer._page.post(go_on.wait)
+        try:
+            fresh.ask(lambda: fresh.simulation.set_pose("post", moved))
+            eventually(waits, what="the state that the page will show")
+            lift(browser, number, moved)
+            if ends:
+                drag(browser, number, "DragEnd")
+            eventually(lambda: gizmo.position[2] == 1.0, what="the drag")
+        finally:
+            go_on.set()
+        eventually(lambda: fresh.pose("post").z == pytest.approx(1.0), what="the post in the air")
+        eventually(lambda: gizmo.position[2] == pytest.approx(1.0), what="the gizmo at the post")
+
+
+def test_what_a_browser_does_as_soon_as_it_can_is_not_lost(fresh, monkeypatch):
+    """Controls come with their callbacks, however long the page takes to set these."""
+
+    def slowly(real, wanted):
+        def add(handle, callback):
+            if wanted(handle):
+                time.sleep(0.3)
+            return real(handle, callback)
+
+        return add
+
+    for kind, name, wanted in (
+        (viser.CommandHandle, "on_trigger", lambda handle: handle.label == "Drive: forward"),
+        (viser.GuiButtonHandle, "on_click", lambda handle: handle.label == "post"),
+        (viser.TransformControlsHandle, "on_update", lambda _: True),
+    ):
+        monkeypatch.setattr(kind, name, slowly(getattr(kind, name), wanted))
+    with browsing(int(fresh.url.rpartition(":")[2])) as browser:
+        browser.look()
+        press(fresh, browser, "forward", GO)
+        select_post(browser)
+        (number,) = fresh.viewer._desk._places
+        lift(browser, number, fresh.pose("post"))
+        eventually(lambda: fresh.pose("post").z > 0.9, what="the post in the air")
 
 
 def test_a_program_waits_for_a_browser(browser):

@@ -91,7 +91,7 @@ class UploadPanel(Panel):
             f'<div class="cw cw-dim">Your own URDF, xacro or SDF file, up to {most} MB</div>'
         )
         upload = gui.add_upload_button("Open a file", icon=page.viser.Icon.UPLOAD)
-        upload.on_upload(page.on(lambda event: self._upload(event.target.value)))
+        upload.on_upload(page.on_value(lambda _, file: self._upload(file)))
 
     def _upload(self, file: Any) -> None:
         name = Path(file.name.replace("\\", "/")).name

@@ -178,7 +178,7 @@ class JointsPanel(Panel):
         models = {model.name: model.description for model in snapshot.scene.models}
         actual = _positions(snapshot)
         self._groups = []
-        with self._tab:
+        with self._tab, self.page.server.atomic():
             for taker in inputs:
                 group = kept.pop(taker, None)
                 description = models.get(taker.model)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
 
 from cartwheel.geometry import Pose, from_wxyz, to_wxyz
 from cartwheel.simulation.snapshot import PlacedModel, Snapshot
@@ -12,6 +12,9 @@ from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.base import Panel, escape, facts, rows_html
 from cartwheel.viewer.seat import Seat
 from cartwheel.viewer.stage import Stage
+
+_Place: TypeAlias = tuple[Sequence[float], Sequence[float]]
+"""Position in m and quaternion (w, x, y, z) of a gizmo."""
 
 
 class WorldPanel(Panel):
@@ -35,6 +38,8 @@ class WorldPanel(Panel):
         self._shown: Pose | None = None
         self._held: Pose | None = None
         """Target pose of a drag; None without a drag."""
+        self._placed: _Place | None = None
+        """Where this panel, and not a drag, last moved the gizmo."""
         self._due = Every(5)
         self._static_due = Every(4)
         self.gui.add_html('<div class="cw cw-dim cw-rows">Models</div>', order=0)
@@ -58,7 +63,7 @@ class WorldPanel(Panel):
         if self._gizmo is not None:
             self._gizmo.remove()
             self._gizmo = None
-        self._held = self._shown = None
+        self._held = self._shown = self._placed = None
         for row, button in self._rows.items():
             button.color = None if row == name else "gray"
         self._delete.visible = name is not None
@@ -69,15 +74,18 @@ class WorldPanel(Panel):
             return
         self._delete.label = f"Delete {name}"
         size = self.stage.scene.models[name].size
-        self._gizmo = self._seat.scene.add_transform_controls(
-            "/gizmo",
-            scale=min(1.2, max(0.25, 0.8 * size)),
-            line_width=3.0,
-            depth_test=False,
-            position=pose.position,
-            wxyz=to_wxyz(pose.orientation),
-        )
-        self._gizmo.on_update(self.page.on(self._drag))
+        # Not visible before its callback is set.
+        with self._seat.client.atomic():
+            gizmo = self._seat.scene.add_transform_controls(
+                "/gizmo",
+                scale=min(1.2, max(0.25, 0.8 * size)),
+                line_width=3.0,
+                depth_test=False,
+                position=pose.position,
+                wxyz=to_wxyz(pose.orientation),
+            )
+            gizmo.on_update(self.page.on_value(self._drag, read=_place_of))
+        self._gizmo = gizmo
         self._shown = pose
         self._describe(snapshot)
 
@@ -97,7 +105,7 @@ class WorldPanel(Panel):
         names = [model.name for model in snapshot.scene.models]
         for name in set(self._rows) - set(names):
             self._rows.pop(name).remove()
-        with self._tab:
+        with self._tab, self._seat.client.atomic():
             for i, name in enumerate(names):
                 if name in self._rows:
                     continue
@@ -119,9 +127,7 @@ class WorldPanel(Panel):
             pose = self.stage.scene.pose(self.selected)
             if pose is not None and pose != self._shown:
                 self._shown = pose
-                with self._seat.client.atomic():
-                    self._gizmo.position = pose.position
-                    self._gizmo.wxyz = to_wxyz(pose.orientation)
+                self._place_gizmo(pose.position, to_wxyz(pose.orientation))
         if self._due(now):
             self._describe(snapshot)
 
@@ -130,16 +136,26 @@ class WorldPanel(Panel):
         simulation = self.simulation
         self.page.then(simulation.call(lambda: simulation.set_pose(name, pose)))
 
-    def _drag(self, event: Any) -> None:
+    def _drag(self, event: Any, place: _Place) -> None:
         """During a drag, holds the model at the gizmo's pose, even against gravity."""
         if event.target is not self._gizmo or self.selected is None:
             return
-        x, y, z = (float(v) for v in event.target.position)
-        pose = Pose((x, y, z), from_wxyz([float(v) for v in event.target.wxyz]))
-        self._held = self._shown = pose
-        if event.phase == "end":
-            self._held = None
-            self._hold(pose)
+        if event.phase != "end":
+            (x, y, z), turn = place
+            self._held = self._shown = Pose((x, y, z), from_wxyz(turn))
+            if _place_of(self._gizmo) == self._placed:
+                # Until this thread learned of the drag, `update` moved the gizmo with the model.
+                self._place_gizmo(*place)
+        elif self._held is not None:
+            # Not at `place`, for the same reason.
+            self._hold(self._held)
+            self._held = self._shown = None
+
+    def _place_gizmo(self, position: Sequence[float], turn: Sequence[float]) -> None:
+        with self._seat.client.atomic():
+            self._gizmo.position = position
+            self._gizmo.wxyz = turn
+        self._placed = _place_of(self._gizmo)
 
     def _hold(self, pose: Pose) -> None:
         if self.selected is not None:
@@ -159,6 +175,10 @@ class WorldPanel(Panel):
     def _say(self, content: str) -> None:
         if content != self._content:
             self._text.content = self._content = content
+
+
+def _place_of(gizmo: Any) -> _Place:
+    return gizmo.position.tolist(), gizmo.wxyz.tolist()
 
 
 def properties_html(placed: PlacedModel, pose: Pose) -> str:
