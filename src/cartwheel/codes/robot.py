@@ -249,3 +249,6 @@ MIMIC_OUT_OF_LIMITS = Code(
     "warning",
     "a joint mimics another one to positions that its own limits exclude",
 )
+START_OUTSIDE_LIMITS = Code(
+    "CW258", "start-outside-limits", "info", "a joint starts outside its limits"
+)

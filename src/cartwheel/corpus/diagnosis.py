@@ -176,7 +176,12 @@ def _measured(
     fallen: Diagnostic | None = None
     wheel = lost_wheel(said, description, verdict.driven) if verdict.drives else None
     if verdict.stand is not None and not (verdict.stands or _need_not_stand(verdict, description)):
-        everything = (*said, *findings())
+        followed = any(drive.follows for drive in verdict.drives)
+        everything = [
+            each
+            for each in (*said, *findings())
+            if not followed or each.code is not robot.WHEELS_OFF_GROUND
+        ]
         fallen = cause_of_fall(verdict.stand, description, everything, idle, wheel)
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:

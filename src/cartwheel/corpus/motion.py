@@ -68,22 +68,25 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
 def _settled(description: RobotDescription, start: Pose, after: Pose) -> float | None:
     """Decrease in height of a robot's lowest collision if all links move with the root, m.
 
+    Joints that start outside their limits are moved into them, so that the robot may come down.
     `start` and `after` are poses of the root. None for a robot without collisions.
     """
     robot = Robot(description, None)
-    root = description.canonical_pose.inverse()
-    shapes = [
-        (solid, root @ pose)
-        for name, pose in starting_poses(robot).items()
+    placed = {link.name: link.pose for link in description.links}
+    before = _lowest(robot, placed, start)
+    now = _lowest(robot, starting_poses(robot), after)
+    return None if before is None or now is None else before - now
+
+
+def _lowest(robot: Robot, poses: Mapping[str, Pose], place: Pose) -> float | None:
+    """Height of the lowest collision of links with these poses, m; `place` is the root's pose."""
+    root = place @ robot.description.canonical_pose.inverse()
+    heights = [
+        float(solid.placed(root @ pose)[:, 2].min())
+        for name, pose in poses.items()
         for solid in robot.collisions[name]
     ]
-    if not shapes:
-        return None
-    before, now = (
-        min(float(solid.placed(place @ pose)[:, 2].min()) for solid, pose in shapes)
-        for place in (start, after)
-    )
-    return before - now
+    return min(heights, default=None)
 
 
 def reaches(

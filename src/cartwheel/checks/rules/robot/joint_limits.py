@@ -6,13 +6,17 @@ from collections.abc import Iterator
 
 from cartwheel.checks import edits, nodes
 from cartwheel.checks.kinematic_tree import joints_with_types
+from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
-from cartwheel.errors import Diagnostic
+from cartwheel.dialects.ros_control.interfaces import ros2_control
+from cartwheel.errors import Diagnostic, PluginError
 
 _LIMITED = ("revolute", "prismatic")
+_OUTSIDE = {"rad": 0.02, "m": 0.002}
+"""Distance of 0 from the limits from which it is reported: limits are often rounded."""
 
 
 @rule(robot_codes.LIMIT_MISSING)
@@ -90,6 +94,41 @@ def limit_zero(subject: Subject) -> Iterator[Diagnostic]:
                 else "Set lower and upper to the joint's range.",
                 mark="lower" if stated else "",
             )
+
+
+@rule(robot_codes.START_OUTSIDE_LIMITS)
+def start_outside_limits(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        if robot.description.static:
+            continue
+        stated = _initial_positions(robot)
+        for joint in robot.description.joints:
+            lower, upper = joint.axis.lower, joint.axis.upper
+            start = stated.get(joint.name, 0.0)
+            if joint.type not in _LIMITED or lower is None or upper is None or lower == upper:
+                continue
+            way = max(lower - start, start - upper)
+            unit = "rad" if joint.type == "revolute" else "m"
+            if way > _OUTSIDE[unit]:
+                yield robot_codes.START_OUTSIDE_LIMITS.diagnostic(
+                    f'joint "{joint.name}" starts at {start:g}, outside its limits of {lower:.4g} '
+                    f"and {upper:.4g} {unit}, so it is pushed by {way:.3g} {unit} when the "
+                    "simulation starts",
+                    values={"joint": joint.name, "start": start, "lower": lower, "upper": upper},
+                    origin=joint.origin,
+                    hint="Spawn the robot with the joint within its limits.",
+                )
+
+
+def _initial_positions(robot: Robot) -> dict[str, float]:
+    """The positions at which controllers of ROS 2 start joints, rad or m."""
+    try:
+        joints, _, _ = ros2_control(robot.description)
+    except PluginError:
+        return {}
+    return {
+        each.name: each.initial_position for each in joints if each.initial_position is not None
+    }
 
 
 def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Diagnostic]:

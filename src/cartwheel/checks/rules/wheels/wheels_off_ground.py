@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from cartwheel.checks.resting import Rest, Surfaces, rest_of
+from cartwheel.checks import plugin_tags
+from cartwheel.checks.resting import Rest, Surfaces, rest_of, starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -24,6 +25,7 @@ from cartwheel.checks.wheels import (
 )
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint, Link
+from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import rotate
 
@@ -126,11 +128,13 @@ def _low_links(robot: Robot) -> Iterator[Diagnostic]:
         return
     bottom = min(wheels)
     radius = wheel_radius(robot, joints[0]) or 0.1
+    poses = starting_poses(robot)
     for link in robot.description.links:
         if link.name in parts or link.name in robot.cut or _rolls(robot, link):
             continue
-        height = lowest(robot, link.name)
-        if height is None or bottom - height <= max(0.1 * radius, 0.005):
+        box = bounds([solid.placed(poses[link.name]) for solid in robot.collisions[link.name]])
+        height = None if box is None else float(box[0][2])
+        if height is None or bottom - height <= max(0.1 * radius, 0.005) or _is_limp(robot, link):
             continue
         yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
             message=f'the collision of link "{link.name}" extends '
@@ -148,6 +152,25 @@ def _rolls(robot: Robot, link: Link) -> bool:
     moves = holder is not None and holder.type in ("continuous", "ball", "revolute", "prismatic")
     name = link.name.lower()
     return moves or any(word in name for word in ("caster", "castor", "wheel", "roller", "ball"))
+
+
+def _is_limp(robot: Robot, link: Link) -> bool:
+    """Whether nothing holds one of the joints between a link and the root, so that it yields."""
+    moved = robot.driven | {
+        name
+        for tag in robot.description.plugins
+        for role in plugin_tags.roles_with(tag.filename, "joint", "other_joint")
+        for name in role.joints(tag.element)
+    }
+    joint, seen = robot.inbound.get(robot.rigid_root(link.name)), set[str]()
+    while joint is not None and joint.name not in seen:
+        seen.add(joint.name)
+        axis = joint.axis
+        held = joint.name in moved or joint.mimic is not None or axis.locks
+        if not held and not axis.friction and not axis.spring_stiffness:
+            return True
+        joint = robot.inbound.get(robot.rigid_root(joint.parent))
+    return False
 
 
 def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
