@@ -133,3 +133,9 @@ DESCRIPTION_NOT_EXPANDED = Code(
     "warning",
     "a launch file passes the text of a xacro to ROS without expanding it",
 )
+ENVIRONMENT_ASSUMED = Code(
+    "CW167",
+    "environment-assumed",
+    "info",
+    "a file uses an environment variable that ROS sets, and no ROS is sourced",
+)

@@ -12,6 +12,7 @@ from cartwheel.description.elements import xml
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.expressions import Budget
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.ros_environment import assumed
 from cartwheel.description.xacro.absent import Absences
 from cartwheel.description.xacro.dom import Document, DomBuilder, Element, clone, size_of, to_node
 from cartwheel.description.xacro.driver_parts import choose_driver_parts
@@ -164,6 +165,12 @@ class Run:
     def warn(self, message: str) -> None:
         """Reports a message of xacro or of the description, once for each location."""
         self._report(codes.XACRO_MESSAGE, message, {"text": message})
+
+    def assume(self, name: str, value: str, version: int) -> None:
+        """Reports the value of an environment variable that ROS would set, once."""
+        if ("environment", name) not in self.seen:
+            self.seen.add(("environment", name))
+            self.diagnostics.append(assumed(name, value, version, self.origin()))
 
     def warn_of_deprecated(self, name: str, meant: str) -> None:
         """Reports a deprecated name of a function, once for each location."""

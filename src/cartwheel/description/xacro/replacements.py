@@ -23,6 +23,7 @@ from cartwheel.description.expressions import Evaluator, ExpressionError
 from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.files.other_places import FIND
 from cartwheel.description.files.package_folders import stand_in_name
+from cartwheel.description.files.ros_environment import RosEnvironment
 from cartwheel.description.xacro.absent import LostCall
 from cartwheel.description.xacro.dom import Document, Element, replace_node
 from cartwheel.description.xacro.errors import ArgumentError
@@ -347,8 +348,9 @@ def replace_functions(module: ModuleType, run: Run) -> None:
     )  # fmt: skip
     vars(module).update({function.__name__: function for function in functions})
     vars(module).update(replace_node=replace_node, glob=SimpleNamespace(glob=matching))
-    if run.packages.reach is not None and not run.packages.reach.environment:
-        substitution.os = SimpleNamespace(environ={}, path=os.path)
+    hidden = run.packages.reach is not None and not run.packages.reach.environment
+    variables = RosEnvironment({} if hidden else os.environ, run.packages.file, run.assume)
+    substitution.os = SimpleNamespace(environ=variables, path=os.path)
     substitution._eval_find = lambda name: run.absences.find(name, run.origin())
 
     evaluator = Evaluator(run.budget, namespace=space.NameSpace, dotted=space.YamlDictWrapper)
