@@ -62,7 +62,8 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
 
     The friction opposes the sliding velocity of each contact, so its forces and torque balance
     where the power that the contacts dissipate is least. This power is a sum of norms, which is
-    minimised by repeatedly weighted least squares.
+    minimised by repeatedly weighted least squares. The limit of the friction is an ellipse if its
+    coefficients differ.
 
     Args:
         contacts: Where the base touches the ground.
@@ -77,17 +78,18 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
     # Sliding velocities along and across the direction, each as rows @ motion - driven.
     axes = [(np.stack([a, b, b * x - a * y], 1), a * rim) for a, b in ((c, s), (-s, c))]
     grips = [loads * np.array([each.friction[i] for each in contacts]) for i in (0, 1)]
+    strongest = np.maximum(np.maximum(*grips), _STILL)
     motion: Floats = np.zeros(3)
     for _ in range(_ROUNDS):
         slides = [
-            np.where(grip > 0, rows @ motion - driven, 0.0)
+            grip * (rows @ motion - driven)
             for grip, (rows, driven) in zip(grips, axes, strict=True)
         ]
-        weights = 1.0 / np.sqrt(slides[0] ** 2 + slides[1] ** 2 + _STILL**2)
+        weights = 1.0 / np.sqrt(slides[0] ** 2 + slides[1] ** 2 + (_STILL * strongest) ** 2)
         matrix: Floats = np.zeros((3, 3))
         vector: Floats = np.zeros(3)
         for grip, (rows, driven) in zip(grips, axes, strict=True):
-            weighted: Floats = np.asarray(rows * (grip * weights)[:, None]).T
+            weighted: Floats = np.asarray(rows * (grip**2 * weights)[:, None]).T
             matrix = matrix + weighted @ rows
             vector = vector + weighted @ driven
         motion = np.asarray(np.linalg.lstsq(matrix, vector, rcond=None)[0], dtype=np.float64)
@@ -141,7 +143,7 @@ def turn_ratio(
             x=_ahead(axle, wheel_place(robot, joint).position),
             y=float(axle @ wheel_tread(robot, joint)),
             rim=rim if joint in left else -rim,
-            friction=_friction(robot, joint.child),
+            friction=_friction(robot, joint.child, axle),
             direction=_direction(robot, joint.child, axle),
         )
         for joint in driven
@@ -292,9 +294,12 @@ def _others(
         place = Surfaces(robot, [link.name]).lowest(_UP)
         if place is None:
             continue
-        mu = max(_friction(robot, link.name))
+        mu = max(_coefficients(robot, link.name))
         if rolls and holder is not None:
             place = np.array(wheel_place(robot, holder).position)
+            if _is_along_axle(robot, link.name, axle):
+                # It slides along its axle.
+                mu = _coefficients(robot, link.name)[0]
         yield Contact(
             x=_ahead(axle, place),
             y=float(axle @ place),
@@ -328,14 +333,26 @@ def _ahead(axle: Floats, place: Sequence[float] | Floats) -> float:
     return float(np.cross(axle, place)[2])
 
 
-def _friction(robot: Robot, link: str) -> tuple[float, float]:
+def _friction(robot: Robot, link: str, axle: Floats) -> tuple[float, float]:
     """Coefficients along and across the direction of a link's first collision, at most 1."""
     first, second = _coefficients(robot, link)
     collisions = robot.links[link].collisions
-    if collisions and collisions[0].surface.fdir1_frame is None:
+    turns = collisions and collisions[0].surface.fdir1_frame is None
+    if turns and not _is_along_axle(robot, link, axle):
         # The axes turn with the wheel, or are those of the world.
         first = second = max(first, second)
     return first, second
+
+
+def _is_along_axle(robot: Robot, link: str, axle: Floats) -> bool:
+    """Whether the first friction direction of a wheel is that of its axle, which does not turn."""
+    for collision in robot.links[link].collisions[:1]:
+        fdir = collision.surface.fdir1
+        if fdir is not None and collision.surface.fdir1_frame is None:
+            pose = robot.links[link].pose @ collision.pose
+            along = abs(float(axle @ np.array(rotate(pose.orientation, fdir))))
+            return along > _PARALLEL * float(np.linalg.norm(fdir))
+    return False
 
 
 def _coefficients(robot: Robot, link: str) -> tuple[float, float]:
@@ -366,7 +383,7 @@ def _grip(robot: Robot, link: str, axle: Floats) -> float:
 
 
 def _direction(robot: Robot, link: str, axle: Floats) -> tuple[float, float]:
-    """Direction of a link's first friction coefficient, if it is fixed in the base."""
+    """Direction of a link's first friction coefficient, if it is fixed in the base or the axle."""
     for collision in robot.links[link].collisions[:1]:
         fdir, frame = collision.surface.fdir1, collision.surface.fdir1_frame
         if fdir is not None and frame in robot.placed:
@@ -375,4 +392,4 @@ def _direction(robot: Robot, link: str, axle: Floats) -> tuple[float, float]:
             length = float(np.hypot(x, y))
             if length > 0:
                 return x / length, y / length
-    return 1.0, 0.0
+    return (0.0, 1.0) if _is_along_axle(robot, link, axle) else (1.0, 0.0)
