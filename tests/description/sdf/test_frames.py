@@ -70,7 +70,6 @@ def test_the_older_frame_attribute_is_read_in_all_elements(version, name):
         <model name="m"><pose {name}="world">1 0 0 0 0 0</pose>
           <link name="a"><pose>0 1 0 0 0 0</pose></link>
           <link name="b"><pose {name}="a">0 1 0 0 0 0</pose>
-            <inertial><pose {name}="a">0 0 1 0 0 0</pose><mass>1</mass></inertial>
             <collision name="c"><pose {name}="a">0 0 1 0 0 0</pose><geometry><box/></geometry>
             </collision>
             <visual name="v"><pose {name}="j">0 0 1 0 0 0</pose><geometry><box/></geometry>
@@ -86,10 +85,34 @@ def test_the_older_frame_attribute_is_read_in_all_elements(version, name):
     close(n.pose, (1, 0, 3))
     close(world.lights[0].pose, (1, 0, 4))
     close(b.pose, (0, 2, 0))
-    for each in (b.inertial, *b.collisions):
-        close(each.pose, (0, -1, 1))
+    close(b.collisions[0].pose, (0, -1, 1))
     close(b.visuals[0].pose, (0, -1, 3))
     close(m.joint("j").pose, (0, -1, 2))
+
+
+@pytest.mark.parametrize("frame", ["a", "mark", "absent"])
+@pytest.mark.parametrize(("version", "name"), [("1.6", "frame"), ("1.7", "relative_to")])
+def test_the_frame_of_an_inertia_is_ignored_with_a_warning(version, name, frame):
+    """As in libsdformat, even if the frame does not exist."""
+    found = robot(
+        f"""<link name="a"/><frame name="mark"><pose>5 0 0 0 0 0</pose></frame>
+        <link name="b"><pose>0 2 0 0 0 0</pose>
+          <inertial><pose {name}="{frame}">0 0 1 0 0 0</pose><mass>1</mass></inertial></link>""",
+        version=version,
+    )
+    close(found.link("b").inertial.pose, (0, 0, 1))
+    (warning,) = [each for each in found.diagnostics if each.code is tags.VALUE_IGNORED]
+    assert warning.values["stated"] == frame
+
+
+@pytest.mark.parametrize("frame", ["", "b"])
+def test_the_frame_of_an_inertia_may_be_that_of_its_link(frame):
+    found = robot(
+        f"""<link name="b"><inertial><pose relative_to="{frame}">0 0 1 0 0 0</pose></inertial>
+        </link>"""
+    )
+    close(found.link("b").inertial.pose, (0, 0, 1))
+    assert not found.diagnostics
 
 
 def test_frames_joints_and_model_as_references():

@@ -235,7 +235,14 @@ class Node:
 
     def cut(self, size: int) -> None:
         """Removes and reports what follows the first `size` numbers of the text."""
-        found = numbers.leading(self.text, size)
+        self._keep(numbers.leading_words(self.text, 1) if size == 1 else None)
+        self._keep(numbers.leading(self.text, size))
+
+    def cut_words(self, size: int) -> None:
+        """Removes and reports what follows the numbers with which the first `size` words begin."""
+        self._keep(numbers.leading_words(self.text, size))
+
+    def _keep(self, found: tuple[str, str] | None) -> None:
         if found is not None and found[1]:
             self._shorten(found[0])
 

@@ -14,6 +14,12 @@ from cartwheel.similar_names import most_similar
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _LEADING = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)", re.ASCII)
+_BEGINS = re.compile(
+    r"[+-]?(?:(?P<hex>0[xX][0-9a-f]+(?:\.[0-9a-f]*)?(?:p[+-]?\d+)?)"
+    r"|(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?)",
+    re.ASCII | re.IGNORECASE,
+)
+"""The beginning of a word that C's ``strtod`` reads, apart from infinity and NaN."""
 _INFINITE = re.compile(r"[+-]?inf(inity)?\Z", re.IGNORECASE)
 LARGEST = 1e15
 """Maximum of positions, sizes and directions; the square of a larger value overflows."""
@@ -93,6 +99,32 @@ def leading(text: str, size: int = 1) -> tuple[str, str] | None:
             return None
         words.append(match[1])
     return " ".join(words), text[end:].strip()
+
+
+def leading_words(text: str, size: int) -> tuple[str, str] | None:
+    """The numbers at the beginning of the first `size` words, which libsdformat reads by itself.
+
+    It reads single numbers, poses and colours so, in contrast to vectors: ``1e`` is 1, ``0.3a`` is
+    0.3, and ``0x10`` is 16.
+
+    Returns:
+        The numbers, separated by spaces, and the rest of the text, which is empty if all words are
+        numbers. None if a word does not begin with a finite number, or there are fewer words.
+    """
+    stated = text.split(None, size)
+    found = [_BEGINS.match(word) for word in stated[:size]]
+    if len(found) < size:
+        return None
+    words: list[str] = []
+    for match in found:
+        if match is None:
+            return None
+        try:
+            words.append(repr(float.fromhex(match[0])) if match["hex"] else match[0])
+        except OverflowError:
+            return None
+    used = " ".join(words)
+    return used, "" if words == stated else text
 
 
 def text_after(tag: str, stated: str, used: str, origin: Origin) -> Diagnostic:

@@ -109,6 +109,7 @@ def read_pose(node: Node | None) -> Pose:
     if not node.text.strip():
         return Pose()
     if quaternion:
+        node.cut_words(7)
         x, y, z, *q = node.vector(7)
         try:
             orientation: Quat = quat_normalize(q)
@@ -116,6 +117,7 @@ def read_pose(node: Node | None) -> Pose:
             raise node.fail(f"pose: {error}") from None
         return Pose(position((x, y, z), "pose", node.origin), orientation)
     words = node.text.split()
+    node.cut_words(len(words))
     if len(words) == 6:
         values = node.vector(6)
     else:
@@ -144,6 +146,7 @@ def reference_of(pose: Node | None) -> str:
 def read_rgba(node: Node) -> Rgba:
     """A colour of three or four numbers, 0 to 1."""
     words = node.text.split()
+    node.cut_words(4 if len(words) > 4 else len(words))
     if len(words) == 3:
         values = (*node.vector(3), 1.0)
     else:

@@ -104,7 +104,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
     return Link(
         name=name,
         pose=pose,
-        inertial=_inertial(node, ctx, place, [c for c in collisions if c is not None]),
+        inertial=_inertial(node, ctx, [c for c in collisions if c is not None]),
         visuals=tuple(v for v in visuals if v is not None),
         collisions=tuple(c for c in collisions if c is not None),
         sensors=tuple(sensors),
@@ -155,7 +155,7 @@ _ROUNDING = 1e-9
 """Largest negative eigenvalue relative to the largest one that is a rounding error."""
 
 
-def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision]) -> Inertial:
+def _inertial(link: Node, ctx: Context, collisions: list[Collision]) -> Inertial:
     """The link's mass and inertia; SDF's default of 1 kg and 1 kg m² if not stated."""
     node = link.child("inertial")
     if node is None:
@@ -163,7 +163,7 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
     if node.boolean_of("auto"):
         found = _auto_inertial(link, node, ctx, collisions)
     else:
-        found = _stated_inertial(link, node, ctx, place)
+        found = _stated_inertial(link, node, ctx)
     water = node.child("fluid_added_mass")
     return found if water is None else replace(found, added_mass=_added_mass(water, ctx))
 
@@ -181,7 +181,7 @@ def _added_mass(water: Node, ctx: Context) -> tuple[float, ...]:
     return values
 
 
-def _stated_inertial(link: Node, node: Node, ctx: Context, place: Place) -> Inertial:
+def _stated_inertial(link: Node, node: Node, ctx: Context) -> Inertial:
     """The mass and the inertia in the tags."""
     tensor = node.child("inertia")
     if tensor is not None and any("nan" in each.text.lower() for each in tensor.children):
@@ -201,7 +201,7 @@ def _stated_inertial(link: Node, node: Node, ctx: Context, place: Place) -> Iner
 
     return Inertial(
         mass=node.number_at("mass", 1.0),
-        pose=place(node),
+        pose=_center(link, node.child("pose"), ctx),
         ixx=entry("ixx", 1.0),
         iyy=entry("iyy", 1.0),
         izz=entry("izz", 1.0),
@@ -210,6 +210,22 @@ def _stated_inertial(link: Node, node: Node, ctx: Context, place: Place) -> Iner
         iyz=entry("iyz", 0.0),
         origin=node.origin,
     )
+
+
+def _center(link: Node, pose: Node | None, ctx: Context) -> Pose:
+    """The pose of an inertia in its link; as libsdformat, without the frame that it may state."""
+    frame = reference_of(pose)
+    if pose is not None and frame not in ("", link.attributes.get("name", "").strip()):
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f'the frame "{frame}" is ignored: as in Gazebo, the <pose> of an <inertial> is always '
+            "relative to its link",
+            origin=pose.origin,
+            mark=frame,
+            hint="State the pose in the frame of the link.",
+            values={"stated": frame},
+        )
+    return read_pose(pose)
 
 
 def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collision]) -> Inertial:
