@@ -19,6 +19,8 @@ INCLUDE = '<xacro:include filename="$(find no_such_package)/urdf/arm.xacro"/>'
 JOINT = (
     '<joint name="j" type="fixed"><parent link="base"/><child link="foot"/></joint><xacro:foot/>'
 )
+FOR_GAZEBO = "<gazebo/>"
+"""An element for Gazebo, in which the robot should stand."""
 CALL = '<xacro:no_such_arm parent="base"/>'
 
 
@@ -66,7 +68,7 @@ def test_a_robot_may_fall_because_a_part_is_missing_that_has_its_collisions(
     tmp_path, parts, reason
 ):
     body = f'<link name="base">{MASS}</link>'
-    verdict = try_robot(expanded(tmp_path, *parts, body), standing=1.0)
+    verdict = try_robot(expanded(tmp_path, *parts, body, FOR_GAZEBO), standing=1.0)
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("stand", reason, "file")
 
@@ -86,7 +88,8 @@ def test_a_robot_may_tip_over_because_what_supports_it_is_missing(tmp_path, incl
     foot = COLLISION.replace("<collision>", '<collision><origin xyz="0.2 0 0"/>')
     parts = [INCLUDE.replace("arm.xacro", f"{include}.xacro")] if include else []
     verdict = try_robot(
-        expanded(tmp_path, *parts, f'<link name="base">{MASS}{foot}</link>', call), standing=1.0
+        expanded(tmp_path, *parts, f'<link name="base">{MASS}{foot}</link>', call, FOR_GAZEBO),
+        standing=1.0,
     )
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("stand", reason, "file")
@@ -114,7 +117,7 @@ def test_a_missing_mesh_of_a_limb_that_gives_way_is_not_why_a_robot_falls(tmp_pa
     """A wheel without its mesh may be, although a limb that gives way carries it."""
     base = f'<link name="base">{MASS}{COLLISION}</link>'
     limb = LIMB.replace("{collision}", "") + HAND.replace("{kind}", kind)
-    verdict = try_robot(written(tmp_path, base, limb), standing=3.0)
+    verdict = try_robot(written(tmp_path, base, limb, FOR_GAZEBO), standing=3.0)
     assert any(each.code is FILE_MISSING for each in verdict.diagnostics)
     stand = next(each for each in verdict.faults if each.test == "stand")
     assert (stand.code, stand.source) == (reason, "file")
@@ -125,7 +128,8 @@ def test_a_missing_mesh_of_a_limb_that_gives_way_is_not_why_a_robot_falls(tmp_pa
 def test_a_missing_mesh_of_another_link_stays_the_reason(tmp_path):
     mesh = '<collision><geometry><mesh filename="no_such.stl"/></geometry></collision>'
     base = f'<link name="base">{MASS}{mesh}</link>'
-    verdict = try_robot(written(tmp_path, base, LIMB.replace("{collision}", "")), standing=3.0)
+    limb = LIMB.replace("{collision}", "")
+    verdict = try_robot(written(tmp_path, base, limb, FOR_GAZEBO), standing=3.0)
     stand = next(each for each in verdict.faults if each.test == "stand")
     assert stand.code is FILE_MISSING
 

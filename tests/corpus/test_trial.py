@@ -127,7 +127,8 @@ STEERED = {
 def tried(tmp_path):
     def run(*parts, **more):
         path = tmp_path / "robot.urdf"
-        path.write_text(f'<robot name="robot">{"".join(parts)}</robot>')
+        # With an element for Gazebo, in which the robot should stand.
+        path.write_text(f'<robot name="robot">{"".join(parts)}<gazebo/></robot>')
         return try_robot(path, standing=2.0, **more)
 
     return run
@@ -1740,6 +1741,43 @@ def test_a_description_for_rviz_that_needs_its_arguments_need_not_stand(tmp_path
     verdict = try_robot(path, standing=1.0, launches=launches_near(tmp_path))
     assert verdict.loaded and not verdict.stands
     assert verdict.good, verdict.faults
+
+
+RVIZ = '<node name="rviz" pkg="rviz" type="rviz"/>'
+SPAWNER = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-urdf -model arm"/>'
+
+
+@pytest.mark.parametrize("node", ["", RVIZ, SPAWNER])
+@pytest.mark.parametrize(
+    ("more", "for_gazebo"),
+    [
+        ("", False),
+        ("<mujoco><compiler/></mujoco>", False),
+        ("<!-- <gazebo/> -->", False),
+        ('<gazebo reference="base"><mu1>1</mu1></gazebo>', True),
+        # Also those of the real robot.
+        (transmission("shoulder", "Effort"), False),
+    ],
+)
+def test_whether_a_launch_file_shows_a_robot_in_rviz_does_not_decide_whether_it_must_stand(
+    tmp_path, node, more, for_gazebo
+):
+    """It does if something in the description is for Gazebo, or a launch file starts it there."""
+    body = BOX.format(name="base", at="0.2 0 0", size="0.1 0.1 0.1")
+    arm = ARM[ARM.index('<link name="upper">') : ARM.index('<joint name="stand"')]
+    arm += ARM[ARM.index('<joint name="shoulder"') : ARM.index("<transmission")]
+    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
+    (tmp_path / "arm.urdf").write_text(f'<robot name="arm">{body}{arm}{more}</robot>')
+    if node:
+        (tmp_path / "arm.launch").write_text(
+            '<launch><param name="robot_description" textfile="$(find arm)/arm.urdf"/>'
+            f"{node}</launch>"
+        )
+    launches = launches_near(tmp_path)
+    verdict = try_robot(tmp_path / "arm.urdf", standing=2.0, launches=launches)
+    assert not verdict.stands
+    started = node == SPAWNER
+    assert verdict.good is (not for_gazebo and not started), verdict.faults
 
 
 @pytest.mark.parametrize("simulated", [True, False])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -20,6 +21,8 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Diagnostic
 
+_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)|<\?.*?\?>", re.DOTALL)
+_ROOT = re.compile(r"\s*<([\w:]+)")
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
@@ -126,12 +129,18 @@ def has_devices(description: RobotDescription) -> bool:
 
 
 def _need_not_stand(verdict: Verdict, description: RobotDescription) -> bool:
-    """Whether a description is for other programs, such as RViz: nothing in it is for Gazebo, and
-    its launch file does not start Gazebo.
+    """Whether a description is for other programs, such as RViz or MuJoCo: a URDF with nothing for
+    Gazebo that no launch file starts in Gazebo.
     """
-    launch = verdict.launch
-    idle = not verdict.movers and not has_devices(description)
-    return launch is not None and not launch.simulated and idle
+    if verdict.movers or verdict.drives or has_devices(description):
+        return False
+    if coded(description.diagnostics, LEFT_OUT) is not None:
+        # The missing part may be for Gazebo.
+        return False
+    started = verdict.launch is not None and verdict.launch.simulated
+    root = _ROOT.match(_COMMENT.sub("", description.text))
+    is_urdf = root is not None and root[1] == "robot"
+    return is_urdf and not started and "<gazebo" not in _COMMENT.sub("", description.text)
 
 
 def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | None:
