@@ -162,6 +162,42 @@ def test_a_plugin_of_an_ignored_element_of_a_model_is_a_fault_of_the_file(
     assert verdict.should_move == moves
 
 
+WHEELED = """<link name="base"><inertial><mass>2</mass><inertia><ixx>0.02</ixx><iyy>0.02</iyy>
+<izz>0.02</izz></inertia></inertial><collision name="c"><geometry><box><size>0.3 0.15 0.06</size>
+</box></geometry></collision></link>"""
+for _name, _y in (("left", 0.1), ("right", -0.1)):
+    WHEELED += f"""<link name="{_name}"><pose>0 {_y} 0 -1.5708 0 0</pose><inertial><mass>0.2</mass>
+<inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>2e-4</izz></inertia></inertial><collision name="c">
+<geometry><cylinder><radius>0.05</radius><length>0.02</length></cylinder></geometry></collision>
+</link><joint name="{_name}_hinge" type="revolute"><parent>base</parent><child>{_name}</child>
+<axis><xyz>0 0 1</xyz></axis></joint>"""
+DIFF_DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><leftJoint>left_hinge
+</leftJoint><rightJoint>right_hinge</rightJoint><wheelSeparation>0.2</wheelSeparation>
+<wheelDiameter>0.1</wheelDiameter></plugin>"""
+
+
+@pytest.mark.parametrize(
+    ("name", "drive", "moves"),
+    [
+        ("libgazebo_ros_control.so", "", True),
+        ("libgazebo_ros_contol.so", "", True),
+        ("libgazebo_ros_contol.so", DIFF_DRIVE, False),
+        ("libmy_sensor.so", "", False),
+        ("libgazebo_ros_laser.so", "", False),
+    ],
+)
+def test_a_misspelt_plugin_of_an_ignored_element_is_what_would_move_wheels(
+    tmp_path, name, drive, moves
+):
+    path = tmp_path / "model.sdf"
+    path.write_text(
+        f'<sdf version="1.6"><model name="robot">{WHEELED}{drive}'
+        f'<gazebo><plugin name="x" filename="{name}"/></gazebo></model></sdf>'
+    )
+    faults = [each for each in try_robot(path, standing=0.5).faults if each.test == "plugin"]
+    assert [(each.code, each.source) for each in faults] == [(TAG_IGNORED, "file")] * moves
+
+
 NAMING = (
     '<gazebo><plugin name="x" filename="libmotor_stream.so">'
     "<motorJoint>left_joint</motorJoint></plugin></gazebo>"

@@ -61,9 +61,7 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     controllers, unless its own name says that it only measures.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
-    waits = _should_move(robot) and not any(
-        is_known(tag) and is_mover(tag.filename) for tag in robot.plugins
-    )
+    waits = _waits(robot)
     return [
         tag
         for tag in robot.plugins
@@ -93,13 +91,16 @@ def may_drive(filename: str, words: Set[str], joints: Set[str]) -> bool:
 def ignored_movers(robot: RobotDescription) -> list[tuple[str, Diagnostic]]:
     """Plugins that should move a robot, but are in an element that is ignored.
 
-    A plugin counts if its name or the tags in it say that it moves something, unless the robot has
-    the same plugin in a place where it is loaded.
+    A plugin counts if its name or the tags in it say that it moves something, or if it is not
+    supported, perhaps because its name is misspelt, and nothing else moves a robot with wheels or
+    with joints for controllers. It does not if the robot has the same plugin in a place where it is
+    loaded.
 
     Returns:
         The short names of the plugins, each with the diagnostic of the ignored element.
     """
     loaded = {short_name(tag.filename) for tag in robot.plugins}
+    waits = _waits(robot)
     found: dict[str, Diagnostic] = {}
     for each in robot.diagnostics:
         names, tags = each.values.get("plugins", ()), each.values.get("parameters", ())
@@ -108,7 +109,7 @@ def ignored_movers(robot: RobotDescription) -> list[tuple[str, Diagnostic]]:
         acts = isinstance(tags, tuple) and any(_COMMANDS.search(str(tag)) for tag in tags)
         for filename in map(str, names):
             name = short_name(filename)
-            moves = is_mover(filename) or (acts and _may_move(filename))
+            moves = is_mover(filename) or ((acts or waits) and _may_move(filename))
             if moves and name not in loaded:
                 found.setdefault(name, each)
     return list(found.items())
@@ -137,7 +138,13 @@ def _may_move(filename: str) -> bool:
     """Whether a plugin is not supported, and its name does not say that it only measures."""
     name = short_name(filename)
     known = plugin_named(filename) or name in BUILT_IN or name in WITHOUT_EFFECT
-    return not known and not reports(name)
+    return not known and not reports(name) and not _RECORDS.search(name)
+
+
+def _waits(robot: RobotDescription) -> bool:
+    """Whether nothing that is supported moves a robot that something should move."""
+    moved = any(is_known(tag) and is_mover(tag.filename) for tag in robot.plugins)
+    return _should_move(robot) and not moved
 
 
 def _should_move(robot: RobotDescription) -> bool:
