@@ -19,8 +19,8 @@ INCLUDE = '<xacro:include filename="$(find no_such_package)/urdf/arm.xacro"/>'
 JOINT = (
     '<joint name="j" type="fixed"><parent link="base"/><child link="foot"/></joint><xacro:foot/>'
 )
-FOR_GAZEBO = "<gazebo/>"
-"""An element for Gazebo, in which the robot should stand."""
+FOR_GAZEBO = '<gazebo><plugin name="view" filename="libDrawForcePlugin.so"/></gazebo>'
+"""A plugin without effect, for which the robot is one for Gazebo and must stand."""
 CALL = '<xacro:no_such_arm parent="base"/>'
 
 

@@ -123,12 +123,15 @@ STEERED = {
 }
 
 
+FOR_GAZEBO = '<gazebo><plugin name="view" filename="libDrawForcePlugin.so"/></gazebo>'
+"""A plugin without effect, for which the robot is one for Gazebo and must stand."""
+
+
 @pytest.fixture
 def tried(tmp_path):
     def run(*parts, **more):
         path = tmp_path / "robot.urdf"
-        # With an element for Gazebo, in which the robot should stand.
-        path.write_text(f'<robot name="robot">{"".join(parts)}<gazebo/></robot>')
+        path.write_text(f'<robot name="robot">{"".join(parts)}{FOR_GAZEBO}</robot>')
         return try_robot(path, standing=2.0, **more)
 
     return run
@@ -1753,8 +1756,9 @@ SPAWNER = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-urdf -model
     [
         ("", False),
         ("<mujoco><compiler/></mujoco>", False),
-        ("<!-- <gazebo/> -->", False),
-        ('<gazebo reference="base"><mu1>1</mu1></gazebo>', True),
+        # Perhaps colours.
+        ('<gazebo reference="base"><mu1>1</mu1></gazebo>', False),
+        (FOR_GAZEBO, True),
         # Also those of the real robot.
         (transmission("shoulder", "Effort"), False),
     ],
@@ -1762,7 +1766,7 @@ SPAWNER = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-urdf -model
 def test_whether_a_launch_file_shows_a_robot_in_rviz_does_not_decide_whether_it_must_stand(
     tmp_path, node, more, for_gazebo
 ):
-    """It does if something in the description is for Gazebo, or a launch file starts it there."""
+    """It must if it has a plugin, or if a launch file starts it in Gazebo."""
     body = BOX.format(name="base", at="0.2 0 0", size="0.1 0.1 0.1")
     arm = ARM[ARM.index('<link name="upper">') : ARM.index('<joint name="stand"')]
     arm += ARM[ARM.index('<joint name="shoulder"') : ARM.index("<transmission")]

@@ -21,8 +21,8 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Diagnostic
 
-_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)|<\?.*?\?>", re.DOTALL)
-_ROOT = re.compile(r"\s*<([\w:]+)")
+_ROOT = re.compile(r"(?:\s|<!--.*?-->|<\?.*?\?>)*<([\w:]+)", re.DOTALL)
+"""The first element of an XML text."""
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
@@ -129,18 +129,17 @@ def has_devices(description: RobotDescription) -> bool:
 
 
 def _need_not_stand(verdict: Verdict, description: RobotDescription) -> bool:
-    """Whether a description is for other programs, such as RViz or MuJoCo: a URDF with nothing for
-    Gazebo that no launch file starts in Gazebo.
+    """Whether a description is for other programs, such as RViz or MuJoCo: a URDF without plugins
+    and sensors that no launch file starts in Gazebo.
     """
     if verdict.movers or verdict.drives or has_devices(description):
         return False
     if coded(description.diagnostics, LEFT_OUT) is not None:
-        # The missing part may be for Gazebo.
+        # The missing part may contain some.
         return False
     started = verdict.launch is not None and verdict.launch.simulated
-    root = _ROOT.match(_COMMENT.sub("", description.text))
-    is_urdf = root is not None and root[1] == "robot"
-    return is_urdf and not started and "<gazebo" not in _COMMENT.sub("", description.text)
+    root = _ROOT.match(description.text)
+    return root is not None and root[1] == "robot" and not started
 
 
 def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | None:
