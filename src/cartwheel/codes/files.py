@@ -139,3 +139,9 @@ ENVIRONMENT_ASSUMED = Code(
     "info",
     "a file uses an environment variable that ROS sets, and no ROS is sourced",
 )
+PACKAGE_URI_IN_SDF = Code(
+    "CW168",
+    "package-uri-in-sdf",
+    "warning",
+    "Gazebo Classic does not find package:// URIs in SDF files",
+)

@@ -28,7 +28,7 @@ from cartwheel.checks.rules.devices import (
     undriven_joints,
     update_rates,
 )
-from cartwheel.checks.rules.files import missing_files, unused_definitions
+from cartwheel.checks.rules.files import missing_files, package_uris, unused_definitions
 from cartwheel.checks.rules.robot import (
     balance,
     drive_joints,
@@ -124,6 +124,7 @@ RULES: tuple[Rule, ...] = tuple(
         claimed_joints,
         driven_joints,
         missing_files,
+        package_uris,
         shape_scale,
         wrong_units,
         ignored_by_gazebo,
