@@ -191,6 +191,17 @@ def test_a_robot_without_a_name_is_a_part(folder, tmp_path):
     assert kinds(tmp_path) == {"camera.xacro": "part"}
 
 
+def test_a_robot_without_a_name_that_needs_an_argument_is_a_part(folder, tmp_path):
+    """Nothing passes the argument, and no other file includes it."""
+    hardware = '<ros2_control name="$(arg side)_arm" type="system"><hardware/></ros2_control>'
+    assert folder(motors_dot_xacro=XACRO.format("", hardware)) == []
+    assert kinds(tmp_path) == {"motors.xacro": "part"}
+    assert kinds(tmp_path, launched=["motors.xacro"]) == {}
+    assert folder(motors_dot_xacro=XACRO.format(' name="arm"', hardware)) == ["motors.xacro"]
+    moved = hardware + '<gazebo><plugin name="p" filename="libgazebo_ros2_control.so"/></gazebo>'
+    assert folder(motors_dot_xacro=XACRO.format("", moved)) == ["motors.xacro"]
+
+
 @pytest.mark.parametrize(
     ("plugin", "found"), [("libgazebo_ros2_control.so", True), ("libgazebo_ros_camera.so", False)]
 )

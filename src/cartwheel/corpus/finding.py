@@ -24,6 +24,7 @@ from cartwheel.errors import DescriptionError
 _SEMANTICS = (".srdf", ".srdf.xacro")
 """MoveIt's files, which begin like a robot."""
 _ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
+_ROBOT, _NAMED = re.compile(r"<robot\b([^<>]*)>"), re.compile(r"\sname\s*=")
 _INCLUDE = re.compile(
     r"""<(?:xacro:)?include\b[^<>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL
 )
@@ -182,7 +183,10 @@ class _Folder:
                 return "old version"
             if not launched and _only_defines(self.texts[path]):
                 return "macros"
-            return "part" if part or (not launched and self._is_elsewhere(path, error)) else None
+            if not launched:
+                part = part or self._is_elsewhere(path, error)
+                part = part or self._is_nameless(path, error)
+            return "part" if part else None
         is_part = (part or path.suffix == ".xacro") and (
             ("name" not in root.attributes and (part or not _moves(self.texts[path])))
             or self._hangs(path, root)
@@ -215,6 +219,16 @@ class _Folder:
             _DEFINED.get(kind, r"(?!)").format(re.escape(name.removeprefix("xacro:"))), re.DOTALL
         )
         return any(found.search(text) for other, text in self.texts.items() if other != path)
+
+    def _is_nameless(self, path: Path, error: DescriptionError) -> bool:
+        """Whether a xacro that needs a name, such as that of an argument, has a ``<robot>`` without
+        a name that no plugin moves."""
+        if error.code is not XACRO_NAME_UNKNOWN:
+            return False
+        text = self.texts[path]
+        root = _ROBOT.search(text)
+        nameless = root is not None and not _NAMED.search(root[1])
+        return path.suffix == ".xacro" and nameless and not _moves(text)
 
     def _hangs(self, path: Path, root: Node) -> bool:
         """Whether a joint connects the file's links to a link that only another file contains."""
