@@ -49,6 +49,12 @@ _LIGHT = re.compile(
 """Names of parts that carry no robot: sensors and materials."""
 _UPRIGHT = 0.7
 """Smallest vertical component of the axis of what is no wheel."""
+_SLID, _TURNED = 0.02, 0.2
+"""Way by which limits push a joint that may make a robot fall, m and rad."""
+_LOW = 0.03
+"""Maximum height of a part on the ground above the lowest point, relative to the robot's size."""
+_PART = 0.5
+"""Part of the angle by which a robot tilted that explains the angle."""
 _FALLEN = 1.0
 """m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
 ground."""
@@ -91,7 +97,47 @@ def cause_of_fall(
         # It is reported only if no missing collision can carry the robot, and is computed with the
         # masses of all links.
         reasons = [each for each in reasons if each.code not in _ABSENT | {robot.INERTIA_MISSING}]
-    return most_severe(reasons) or idle
+    if any(_tips_rigid(each, stand) for each in reasons):
+        # Even if its joints were held.
+        reasons = [each for each in reasons if each.code is not robot.JOINTS_UNDRIVEN]
+    return most_severe(reasons) or idle or _pushed(found, description)
+
+
+def _tips_rigid(each: Diagnostic, stand: Stand) -> bool:
+    """Whether a finding says that the robot tips over although no joint moves."""
+    if each.code is not robot.UNBALANCED:
+        return False
+    outside, tilt = each.values.get("outside"), each.values.get("tilt")
+    if isinstance(tilt, float):
+        return tilt >= _PART * stand.tilt
+    return bool(each.values.get("falls")) or (isinstance(outside, float) and outside > 0)
+
+
+def _pushed(found: Sequence[Diagnostic], description: RobotDescription) -> Diagnostic | None:
+    """A joint above a part on the ground that its limits push out of its place at the start."""
+    body = Robot(description, None)
+    lows = {
+        name: min(float(solid.placed(link.pose)[:, 2].min()) for solid in body.collisions[name])
+        for name, link in body.links.items()
+        if name in body.placed and body.collisions[name]
+    }
+    ground = min(lows.values(), default=0.0)
+    above: set[str] = set()
+    for name, low in lows.items():
+        joint = body.inbound.get(body.rigid_root(name)) if low < ground + _LOW * body.size else None
+        while joint is not None and joint.name not in above:
+            above.add(joint.name)
+            joint = body.inbound.get(body.rigid_root(joint.parent))
+    for each in found:
+        joint = body.joints.get(str(each.values.get("joint", "")))
+        if each.code is not robot.START_OUTSIDE_LIMITS or joint is None or joint.name not in above:
+            continue
+        start, lower, upper = (each.values[name] for name in ("start", "lower", "upper"))
+        assert isinstance(start, float) and isinstance(lower, float) and isinstance(upper, float)
+        way = max(lower - start, start - upper)
+        if way > (_SLID if joint.type == "prismatic" else _TURNED):
+            return each
+    return None
 
 
 def lost_wheel(

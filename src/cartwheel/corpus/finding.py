@@ -222,7 +222,8 @@ class _Folder:
 
     def _is_nameless(self, path: Path, error: DescriptionError) -> bool:
         """Whether a xacro that needs a name, such as that of an argument, has a ``<robot>`` without
-        a name that no plugin moves."""
+        a name that no plugin moves.
+        """
         if error.code is not XACRO_NAME_UNKNOWN:
             return False
         text = self.texts[path]
