@@ -1676,16 +1676,16 @@ def test_wheels_without_motors_explain_why_a_robot_rolls(moving):
     assert {each.code for each in found} <= {JOINTS_UNDRIVEN}
 
 
-def test_a_joint_that_gives_way_explains_why_a_robot_sinks(tmp_path, tried):
-    """A leg that nothing drives folds below a body, beside a joint that a controller holds."""
-    leg = BOX.format(name="leg", at="0 0 -0.15", size="0.02 0.3 0.02").replace(
-        "<collision>", '<collision><origin xyz="0.05 0 -0.3"/>'
+def test_a_joint_that_gives_way_explains_why_a_robot_falls(tmp_path, tried):
+    """A body turns on a leg that nothing drives; it would stand if the knee were held."""
+    leg = BOX.format(name="leg", at="0 0 -0.15", size="0.2 0.3 0.02").replace(
+        "<collision>", '<collision><origin xyz="0 0 -0.3"/>'
     )
     knee = (
         '<joint name="knee" type="revolute"><parent link="base"/><child link="leg"/>'
         '<axis xyz="0 1 0"/><limit lower="-2" upper="2" effort="9" velocity="9"/></joint>'
     )
-    verdict = tried(BOX.format(name="base", at="0 0 0", size="0.1 0.1 0.1"), leg, knee)
+    verdict = tried(BOX.format(name="base", at="0.04 0 0.05", size="0.1 0.1 0.1"), leg, knee)
     (fault, *_) = verdict.faults
     assert (fault.test, fault.code) == ("stand", JOINTS_UNDRIVEN)
     assert fault.reason.values["joints"] == ("knee",)

@@ -14,6 +14,7 @@ from cartwheel.corpus.faults import most_severe
 from cartwheel.corpus.movers import managers, reports
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.remappings import remap_rules
 from cartwheel.errors import Code, Diagnostic
 
 _AGREES = 0.15
@@ -267,9 +268,7 @@ def _names(tag: PluginTag) -> set[str]:
 def _topics(tag: PluginTag) -> Iterator[str]:
     stated = [each.text.strip() for each in tag.element.children if _TOPIC.match(each.tag)]
     yield from stated or [_COMMANDS]
-    ros = tag.element.find("ros")
-    for each in ros.find_all("remapping") if ros is not None else ():
-        source, _, target = each.text.strip().partition(":=")
+    for source, target in remap_rules(tag):
         if source.rpartition("/")[2] == _COMMANDS:
             yield target
 

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Generic, TypeVar, get_args
 from cartwheel.codes import devices
 from cartwheel.component import Component, Scope, Shared
 from cartwheel.description.model import Element, PluginTag, Sensor
+from cartwheel.dialects.remappings import namespace_of, remappings
 from cartwheel.dialects.tags import SMALLEST, invalid, read
 from cartwheel.errors import Origin
 from cartwheel.graph import Action, ActionTopics, Goal
@@ -118,13 +119,13 @@ class Plugin(Component, Generic[C]):
         )
 
     def _scope(self, part: Part, shared: Shared, tag: PluginTag) -> TagScope:
-        ros = tag.element.find("ros/namespace")
+        ros = namespace_of(tag)
         plain = tag.element.find("robotNamespace")
         # As in Gazebo: the tag takes precedence over the spawner's namespace.
         namespace = part.namespace.rstrip("/")
         frame_prefix = part.frame_prefix
         if ros is not None:
-            namespace = ros.text.strip()
+            namespace = ros
         elif plain is not None:
             namespace = plain.text.strip() or (part.name if self.empty_is_model else "")
         if ros is None and self.prefixes_by_namespace and not frame_prefix:
@@ -140,7 +141,7 @@ class Plugin(Component, Generic[C]):
             origin=tag.origin,
             namespace=namespace,
             frame_prefix=frame_prefix,
-            remappings=_remappings(tag),
+            remappings=remappings(tag),
             input_name=tag.name,
             owner=self,
             tag=tag,
@@ -276,13 +277,3 @@ class SensorPlugin(Plugin[C]):
 
     for_sensor: ClassVar[bool] = True
     sensor: Sensor
-
-
-def _remappings(tag: PluginTag) -> dict[str, str]:
-    ros = tag.element.find("ros")
-    pairs = {}
-    for remapping in ros.find_all("remapping") if ros else ():
-        source, separator, target = remapping.text.strip().partition(":=")
-        if separator:
-            pairs[source.removeprefix("~/")] = target.removeprefix("~/")
-    return pairs
