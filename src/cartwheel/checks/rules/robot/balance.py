@@ -14,6 +14,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
     CAMBER,
+    ROUND,
     lowest,
     passive_axle,
     wheel_axis,
@@ -21,6 +22,7 @@ from cartwheel.checks.wheels import (
     wheel_links,
     wheel_middle,
     wheel_radius,
+    wheel_widths,
 )
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.kinematics import center_of_mass
@@ -203,9 +205,18 @@ def _ahead(robot: Robot, wheel: Joint) -> Floats:
     return ahead if length < CAMBER else ahead / length
 
 
+def _height(robot: Robot, wheel: Joint) -> float | None:
+    """Height of an axle above the ground on which its wheel stands, m, which may lie flat."""
+    widths = wheel_widths(robot, wheel, robot.collisions)
+    lows = [low for name in wheel_links(robot, wheel) if (low := lowest(robot, name)) is not None]
+    if widths is None or not lows or widths.min() >= ROUND * widths.max():
+        return wheel_radius(robot, wheel)
+    return float(wheel_middle(robot, wheel)[2]) - min(lows)
+
+
 def _angles(robot: Robot, links: Sequence[str], wheel: Joint) -> dict[str, tuple[float, float]]:
     """The angles by which links turn about an axle until they touch the ground; see `_tilts`."""
-    radius, ahead = wheel_radius(robot, wheel), _ahead(robot, wheel)
+    radius, ahead = _height(robot, wheel), _ahead(robot, wheel)
     axle = np.array(wheel_middle(robot, wheel))
     if radius is None or np.linalg.norm(ahead) < CAMBER:
         return {}
@@ -236,7 +247,7 @@ def _raised_casters(robot: Robot, links: Sequence[str], wheel: Joint) -> dict[st
         links: Its links apart from the wheels.
         wheel: The joint of a wheel on the axle.
     """
-    radius, axle = wheel_radius(robot, wheel), np.array(wheel_middle(robot, wheel))
+    radius, axle = _height(robot, wheel), np.array(wheel_middle(robot, wheel))
     tilts = _angles(robot, links, wheel)
     if radius is None:
         return {}

@@ -1,15 +1,16 @@
-"""Whether driven wheels are round."""
+"""Whether wheels are round."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from cartwheel.checks import nodes
+from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import ROUND, is_across, wheel_joints, wheel_widths
+from cartwheel.checks.wheels import ROUND, is_across, passive_axle, wheel_joints, wheel_widths
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.model import Cylinder
+from cartwheel.description.model import Cylinder, Joint
 from cartwheel.errors import Diagnostic
 
 _UPRIGHT = {"x": 'rpy="0 1.5708 0"', "y": 'rpy="1.5708 0 0"', "z": 'rpy="0 0 0"'}
@@ -19,7 +20,9 @@ _UPRIGHT = {"x": 'rpy="0 1.5708 0"', "y": 'rpy="1.5708 0 0"', "z": 'rpy="0 0 0"'
 @rule(robot_codes.WHEEL_NOT_ROUND)
 def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
-        for joint in wheel_joints(robot):
+        driven = wheel_joints(robot)
+        what = "driven wheel" if driven else "wheel"
+        for joint in driven or _lying(robot):
             link = robot.links[joint.child]
             widths = wheel_widths(robot, joint, robot.collisions)
             # Misaligned axes are reported by another rule.
@@ -36,7 +39,7 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
                 )
             alone = node is not None and bool(text) and len(link.collisions) == 1
             yield robot_codes.WHEEL_NOT_ROUND.diagnostic(
-                message=f'the collision of the driven wheel "{link.name}" is not round: seen along '
+                message=f'the collision of the {what} "{link.name}" is not round: seen along '
                 f"the joint axis, its width varies from {widths.min():.3g} m to "
                 f"{widths.max():.3g} m",
                 values={
@@ -54,3 +57,12 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
                 if text
                 else "",
             )
+
+
+def _lying(robot: Robot) -> Iterator[Joint]:
+    """The joints of undriven wheels on an axle whose only collision is a disc that lies flat."""
+    for joint in (robot.joints[name] for name in passive_axle(robot, ())):
+        for disc in robot.links[joint.child].collisions[:1]:
+            shape = disc.shape
+            if isinstance(shape, Cylinder) and shape.length < 2.0 * shape.radius:
+                yield joint
