@@ -4,7 +4,11 @@ import pytest
 from tests.corpus.carts import cart, controlled, plugin, written
 
 import cartwheel
-from cartwheel.codes.devices import CONTROLLERS_NOT_FOUND, PLUGIN_OF_OTHER_ROS
+from cartwheel.codes.devices import (
+    CONTROLLERS_NOT_FOUND,
+    PLUGIN_OF_OTHER_ROS,
+    PLUGIN_PARAMETER_OBSOLETE,
+)
 from cartwheel.corpus import try_robot
 from cartwheel.dialects.catalogue import PLUGINS
 from cartwheel.dialects.ros_only import _REPLACEMENTS
@@ -190,3 +194,23 @@ def test_a_drive_with_the_tags_of_the_other_version_does_not_drive_in_gazebo(tmp
     assert driven.passes
     wrong = [("plugin", PLUGIN_OF_OTHER_ROS, "file")] if version == 2 else []
     assert [(each.test, each.code, each.source) for each in verdict.faults] == wrong
+
+
+@pytest.mark.parametrize(
+    ("stated", "joint", "more", "tag"),
+    [
+        (AMENT, "left_joint", "", "max_wheel_torque"),
+        (CATKIN, "leftJoint", "", "wheelTorque"),
+        # The tags decide if the version of the package is unknown.
+        ("", "left_joint", "", "max_wheel_torque"),
+        ("", "leftJoint", "", "wheelTorque"),
+        ("", "leftJoint", "<ros><namespace>/a</namespace></ros>", "max_wheel_torque"),
+    ],
+)
+def test_the_tag_in_place_of_an_obsolete_one_is_that_of_the_version(
+    tmp_path, *, stated, joint, more, tag
+):
+    tags = f"<{joint}>shoulder</{joint}><torque>20</torque>{more}"
+    path = robot(tmp_path, "libgazebo_ros_diff_drive.so", stated, tags)
+    (one,) = [e for e in cartwheel.check(path).findings if e.code is PLUGIN_PARAMETER_OBSOLETE]
+    assert one.instead == f"<{tag}>20</{tag}>"

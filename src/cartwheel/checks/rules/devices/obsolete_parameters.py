@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 from cartwheel.checks import edits, nodes, plugin_tags
+from cartwheel.checks.robot import Drive
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import is_legacy, wheel_pairs
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.files.ros_version import ros_version
 from cartwheel.dialects.wheel_pairs import are_swapped
 from cartwheel.errors import Diagnostic
+
+_TORQUE = {1: "wheelTorque", 2: "max_wheel_torque"}
+"""The tag of the wheel torque by the version of ROS."""
 
 
 @rule(devices_codes.PLUGIN_PARAMETER_OBSOLETE)
@@ -34,7 +40,9 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                         message=f"Gazebo 11 ignores <{name}>, so the wheel torque is "
                         f"{torque.default[0]:g} N m instead of {each.text.strip()} N m",
                         values={"tag": name, "plugin": drive.tag.name},
-                        **edits.whole(each, nodes.written(torque.tags[0], {}, each.text.strip())),
+                        **edits.whole(
+                            each, nodes.written(_TORQUE[_ros(drive)], {}, each.text.strip())
+                        ),
                     )
             legacy = element.find("legacyMode")
             if legacy is not None and is_legacy(drive):
@@ -51,3 +59,10 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                     **edits.whole(legacy, "<legacyMode>false</legacyMode>"),
                     hint="Swap the names of the two joints." if swapped else "",
                 )
+
+
+def _ros(drive: Drive) -> int:
+    """The version of ROS for which a drive is written: that of its package, or by its tags."""
+    element = drive.tag.element
+    new = element.find("ros") is not None or element.find("left_joint") is not None
+    return ros_version(Path(element.origin.file)) or (2 if new else 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Unpack
 
@@ -36,7 +37,8 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
             yield from _judged(robot, left, right, "", **swap)
     for robot, controller, name, left, right in _of_controllers(subject):
         owner = f'controller "{controller.name}": '
-        yield from _judged(robot, left, right, owner, origin=name.origin, mark=left.name)
+        ways = _ways(controller)
+        yield from _judged(robot, left, right, owner, ways, origin=name.origin, mark=left.name)
 
 
 def _of_controllers(subject: Subject) -> Iterator[tuple[Robot, Controller, Value, Joint, Joint]]:
@@ -49,18 +51,46 @@ def _of_controllers(subject: Subject) -> Iterator[tuple[Robot, Controller, Value
                 yield robot, controller, sides[0][0], *pair
 
 
+def _ways(controller: Controller) -> tuple[float, float]:
+    """The signs of the multipliers with which a controller turns the wheels of each side."""
+    left, right = (
+        each.number if each is not None and each.number is not None else 1.0
+        for side in ("left", "right")
+        for each in (controller.value(f"{side}_wheel_radius_multiplier"),)
+    )
+    return math.copysign(1.0, left), math.copysign(1.0, right)
+
+
 def _judged(
-    robot: Robot, left: Joint, right: Joint, owner: str, **where: Unpack[Where]
+    robot: Robot,
+    left: Joint,
+    right: Joint,
+    owner: str,
+    ways: tuple[float, float] = (1.0, 1.0),
+    **where: Unpack[Where],
 ) -> Iterator[Diagnostic]:
     why = _swapped(robot, left, right)
     if why:
-        where["hint"] = "Swap the two names. Otherwise, the robot turns in the wrong direction."
+        where["hint"] = "Swap the two names."
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'{owner}the left wheel joint "{left.name}" is to the right of '
-            f'"{right.name}", {why}',
+            f'"{right.name}", {why}{_consequence(robot, left, right, ways)}',
             values={"left": left.name, "right": right.name},
             **where,
         )
+
+
+def _consequence(robot: Robot, left: Joint, right: Joint, ways: tuple[float, float]) -> str:
+    """How a robot with swapped wheels drives, which depends on the directions of their axes.
+
+    If both wheels turn backwards, the turn is right again. If one does, the robot turns when it
+    should drive, which other rules report.
+    """
+    senses = axis_senses(robot, left, right)
+    rolled = [sense * way for sense, way in zip(senses, ways, strict=False)]
+    if faces_sideways(gap_between(robot, left, right)) or (rolled and min(rolled) > CAMBER):
+        return ", so the robot turns in the wrong direction"
+    return ", so the robot drives backwards" if rolled and max(rolled) < -CAMBER else ""
 
 
 def _swapped(robot: Robot, left: Joint, right: Joint) -> str:

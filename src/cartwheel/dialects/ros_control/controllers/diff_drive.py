@@ -149,10 +149,13 @@ class DiffDriveController(Controller):
             axes = [(x, y, z) if sense >= 0 else (-x, -y, -z) for sense in senses]
             check_axes(self, dict(zip(joints, axes, strict=True)))
         if are_swapped(self.part.description, first_left, first_right):
+            turns = (
+                ", so the robot turns the wrong way" if min(left_factor, right_factor) > 0 else ""
+            )
             self.warn(
                 robot.WHEELS_SWAPPED,
                 f'the left wheel ("{first_left}") is to the right of the right wheel '
-                f'("{first_right}"), so the robot turns the wrong way',
+                f'("{first_right}"){turns}',
                 values={"left": first_left, "right": first_right},
             )
         separation = given.separation_factor * self._separation(given, first_left, first_right)
