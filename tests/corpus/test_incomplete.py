@@ -181,7 +181,11 @@ def test_what_moves_a_robot_that_is_started_in_gazebo_may_be_in_an_absent_file(
     path = expanded(tmp_path, BESIDE, f'<link name="base">{MASS}{COLLISION}</link>')
     verdict = try_robot(path, standing=1.0)
     found = [(each.test, each.code, each.source) for each in verdict.faults]
-    assert found == ([("plugin", INCLUDE_ABSENT, "unknown")] if spawned else [])
+    if built:
+        assert found == ([("plugin", INCLUDE_ABSENT, "unknown")] if spawned else [])
+    else:
+        # Its xacro stops at the include.
+        assert found == [("load", INCLUDE_ABSENT, "file")]
     assert all(bool(each.reason.values["template"]) == built for each in verdict.faults)
 
 
@@ -190,5 +194,24 @@ def test_what_turns_wheels_may_be_in_a_file_that_a_build_makes(tmp_path, built):
     if built:
         (tmp_path / "movers.xacro.in").write_text("@MOVERS@")
     (fault,) = try_robot(expanded(tmp_path, BESIDE, cart()), standing=1.0).faults
-    assert (fault.test, fault.code) == ("plugin", INCLUDE_ABSENT)
+    assert (fault.test, fault.code) == ("plugin" if built else "load", INCLUDE_ABSENT)
     assert fault.source == ("unknown" if built else "file")
+
+
+@pytest.mark.parametrize(
+    ("file", "test"),
+    [
+        ("$(find robot)/urdf/drive.xacro", "load"),
+        ("urdf/drive.xacro", "load"),
+        ("../far_robot/drive.xacro", "plugin"),
+        ("$(find far_robot)/drive.xacro", "plugin"),
+    ],
+)
+def test_xacro_stops_at_a_file_that_its_own_package_does_not_contain(tmp_path, file, test):
+    """A package that is not here may contain the file."""
+    folder = tmp_path / "src" / "robot"
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>robot</name></package>")
+    include = f'<xacro:include filename="{file}"/>'
+    (fault,) = try_robot(expanded(folder, include, cart()), standing=1.0).faults
+    assert (fault.test, fault.code, fault.source) == (test, INCLUDE_ABSENT, "file")

@@ -1042,7 +1042,7 @@ def test_an_unsupported_plugin_with_gains_or_motors_is_a_fault(tried, tag):
 
 def test_wheels_whose_drive_was_in_an_absent_file_are_a_fault(tmp_path):
     path = tmp_path / "cart.xacro"
-    include = '<xacro:include filename="drive.xacro"/>'
+    include = '<xacro:include filename="$(find far_drive)/drive.xacro"/>'
     wheels = cart(0.1).replace(DRIVE.format(diameter=0.1), include)
     head = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
     path.write_text(f"{head}{wheels}</robot>")

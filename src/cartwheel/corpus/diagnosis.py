@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
@@ -17,6 +19,7 @@ from cartwheel.corpus.missing_movers import (
     unmanaged_transmissions,
 )
 from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Diagnostic
@@ -104,11 +107,15 @@ def _faults(
         yield Fault(test="load", reason=unloaded)
     if (plain := coded(verdict.observed, _NOT_EXPANDED)) is not None:
         yield Fault(test="load", reason=plain)
+    stopped = _stopped(description)
+    if stopped is not None:
+        yield Fault(test="load", subject=str(stopped.values["file"]), reason=stopped)
     # Two plugins of a kind are one fault.
     held = bool([*_held_bases(verdict, description, findings)])
     missing = {
         fault.subject: fault
         for fault in reversed([*missing_movers(verdict, description, held=held)])
+        if stopped is None or fault.reason is not stopped
     }
     unmanaged = dict(unmanaged_hardware(verdict, description, findings))
     if unmanaged:
@@ -166,6 +173,33 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
             if roots:
                 return each
     return None
+
+
+def _stopped(description: RobotDescription) -> Diagnostic | None:
+    """An include that stops xacro because its package does not contain the file.
+
+    Unlike a package, the file is not only absent here, unless the package's build makes it.
+    """
+    return next(
+        (
+            each
+            for each in description.diagnostics
+            if each.code is files.INCLUDE_ABSENT
+            and each.values.get("kind") != "package"
+            and not each.values.get("template")
+            and _is_complete(Path(str(each.values["name"])))
+        ),
+        None,
+    )
+
+
+def _is_complete(file: Path) -> bool:
+    """Whether the package of an absent file is here, or else files beside it."""
+    folder = Path(os.path.normpath(file)).parent
+    try:
+        return package_above(folder) is not None or any(folder.iterdir())
+    except OSError:
+        return False
 
 
 def _measured(
