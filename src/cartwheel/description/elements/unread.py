@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from cartwheel.codes import tags as codes
@@ -9,6 +10,9 @@ from cartwheel.description.elements import numbers
 from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic, Origin, Value
 
+_ATTRIBUTE = re.compile(r"""(?<![\w:])(\w+)\s*=\s*("[^"]*"|'[^']*')""")
+_LONGEST = 1000
+"""Maximum number of characters of a text that are searched for attributes."""
 _SHOWN = 3
 """Number of plugins that a message names."""
 _VALUES = 32
@@ -43,6 +47,7 @@ def unread(
             form='"{}"',
             values={"tag": node.tag, "attribute": name},
         )
+    yield from _attributes_in_text(node)
     for child in node.children:
         if child._read:
             yield from unread(child, harmless)
@@ -72,6 +77,23 @@ def unread(
             form="<{}>",
             values=values,
             lost=_subject(plugins),
+        )
+
+
+def _attributes_in_text(node: Node) -> Iterator[Diagnostic]:
+    """A warning for attributes that are written behind a tag, as in ``<origin> xyz="0 0 1"``."""
+    found = {
+        name: value
+        for name, value in _ATTRIBUTE.findall(node.text[:_LONGEST])
+        if name in node._asked_attributes and name not in node.attributes
+    }
+    if found:
+        written = " ".join(f"{name}={value}" for name, value in found.items())
+        yield codes.TAG_IGNORED.diagnostic(
+            f"the text of <{node.tag}> is ignored, although it contains attributes",
+            origin=node.origin,
+            hint=f"Write them in the tag: <{node.tag} {written}>.",
+            values={"tag": node.tag, "text": written},
         )
 
 

@@ -36,6 +36,7 @@ _IDLE = {
     "particle_emitter": "particle emitters are not supported",
     "must_be_base_link": "the base is always the root link",
 }
+_IDLE_IN_VISUAL = {"plugin": "visual plugins are not supported"}
 _SURFACE = {
     "mu": "mu1",
     "mu1": "mu1",
@@ -157,6 +158,7 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     for visual in node.all("visual"):
         visual.get("name")
         _read_visual(visual, tags, ctx)
+        warn_idle(visual, _IDLE_IN_VISUAL, ctx)
     for collision in node.all("collision"):
         collision.get("name")
         _read_collision(collision, tags, ctx)

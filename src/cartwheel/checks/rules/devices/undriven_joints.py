@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 from cartwheel.checks import plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.model import Joint, PluginTag
+from cartwheel.description.files.ros_version import ros_version
+from cartwheel.description.model import Joint, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.tag_roles import WHEEL_ROLES
@@ -26,19 +28,30 @@ def undriven_joints(subject: Subject) -> Iterator[Diagnostic]:
         free = [joint for joint in description.joints if _is_free(joint)]
         if not free:
             continue
-        hint = "Add a plugin that drives them, such as gazebo_ros_control or gz_ros2_control."
-        if description.transmissions:
-            hint = (
-                "The robot has <transmission>s, which only a controller manager uses: add "
-                '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>.'
-            )
         yield robot_codes.JOINTS_UNDRIVEN.diagnostic(
             f"no plugin drives {_names(free)}, so gravity can move "
             f"{'it' if len(free) == 1 else 'them'}",
             origin=free[0].origin,
-            hint=hint,
+            hint=_hint(description),
             values={"joints": tuple(joint.name for joint in free)},
         )
+
+
+def _hint(description: RobotDescription) -> str:
+    """Which plugin to add, by the version of ROS for which the robot's package is built."""
+    version = ros_version(Path(description.origin.file))
+    add = 'add <gazebo><plugin name="control" filename="{}"/></gazebo>.'
+    if description.ros2_control:
+        manager = add.format("libgazebo_ros2_control.so")
+        return f"The robot has <ros2_control>, which only a controller manager uses: {manager}"
+    if version == 2:
+        extra = "<transmission>s have no effect in ROS 2: " if description.transmissions else ""
+        hint = f"{extra}add a plugin that drives them, such as gz_ros2_control with <ros2_control>."
+        return hint[0].upper() + hint[1:]
+    if description.transmissions:
+        manager = add.format("libgazebo_ros_control.so")
+        return f"The robot has <transmission>s, which only a controller manager uses: {manager}"
+    return "Add a plugin that drives them, such as gazebo_ros_control or gz_ros2_control."
 
 
 def _names(joints: list[Joint]) -> str:

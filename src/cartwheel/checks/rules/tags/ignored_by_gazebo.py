@@ -19,7 +19,16 @@ def gazebo_ignores(subject: Subject) -> Iterator[Diagnostic]:
         on_link = bool(nodes.text_of(node, "reference"))
         for child in node.children:
             value = child.text or child.attributes.get("value", "")
-            if on_link and child.tag == "mu":
+            stated = [each for each in ("mu1", "mu2") if nodes.child(node, each) is not None]
+            if on_link and child.tag == "mu" and stated:
+                yield codes.GAZEBO_IGNORES.diagnostic(
+                    message="Gazebo ignores <mu> in this element, and uses "
+                    f"{' and '.join(f'<{each}>' for each in stated)}",
+                    severity="info",
+                    origin=child.origin,
+                    hint="Remove <mu>.",
+                )
+            elif on_link and child.tag == "mu":
                 yield codes.GAZEBO_IGNORES.diagnostic(
                     message="Gazebo ignores <mu> in this element, so the friction coefficient is 1",
                     **edits.whole(child, f"<mu1>{value}</mu1><mu2>{value}</mu2>"),
