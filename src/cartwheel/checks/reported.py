@@ -32,6 +32,9 @@ _OF_URDF = (
     "hardwareInterface",
 )  # fmt: skip
 """Tags that are valid in URDF, but not directly in <robot>."""
+_SINGLE = ("inertial", "mass", "inertia", "geometry", "axis", "limit", "dynamics", "mimic")
+"""Elements of URDF that their parents contain once."""
+_ATTRIBUTES = {"mass": ("value",), "inertia": MOMENTS}
 _NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
@@ -123,6 +126,11 @@ def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
     if diagnostic.code is codes.MATERIAL_UNKNOWN:
         idle = not str(values["name"]).startswith("Gazebo/")
     is_tag = diagnostic.code is codes.TAG_IGNORED and not attribute
+    hint = "" if meant or values.get("meant") else diagnostic.hint
+    if is_tag and meant and node is not None and not _fits(subject, node, meant):
+        meant = ""
+        if subject.is_urdf and subject.files[0].endswith(".xacro"):
+            hint = f"If it is a macro, define it and write <xacro:{node.tag}>."
     instead, attached = "", ""
     if meant and node is not None and not node.children:
         if is_tag:
@@ -136,7 +144,7 @@ def _advised(subject: Subject, diagnostic: Diagnostic) -> Diagnostic:
         severity="info" if idle else diagnostic.severity,
         instead=instead or (f"<{meant}>" if is_tag and meant else meant),
         place="element" if attached == "element" else "attribute" if attached else "",
-        hint="" if meant or values.get("meant") else diagnostic.hint,
+        hint=hint,
     )
 
 
@@ -156,7 +164,17 @@ def _likely(node: Node | None, diagnostic: Diagnostic) -> str:
 
 def _calls_macro(subject: Subject, node: Node, diagnostic: Diagnostic) -> bool:
     in_robot = diagnostic.values.get("parent") == "robot"
-    return in_robot and node.tag in subject.macros
+    return node.tag in subject.macros and (in_robot or node.tag not in _OF_URDF)
+
+
+def _fits(subject: Subject, node: Node, meant: str) -> bool:
+    """Whether an element with another tag would be valid in the place of an unknown one."""
+    holder = subject.holder_of(node)
+    others = [each for each in nodes.walk(subject.root) if each.tag == meant]
+    if meant in _SINGLE and any(each in others for each in (holder.children if holder else ())):
+        return False
+    known = set(_ATTRIBUTES.get(meant, ())).union(*(each.attributes for each in others))
+    return not known or known.issuperset(node.attributes)
 
 
 def _from_urdf(subject: Subject, node: Node) -> str:

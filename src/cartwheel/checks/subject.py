@@ -83,12 +83,12 @@ class Subject:
 
     @cached_property
     def macros(self) -> frozenset[str]:
-        """Names of the macros defined in its files."""
+        """Names of the macros defined in its files, also without the prefix, as before Noetic."""
         return frozenset(
             nodes.name_of(node).removeprefix("xacro:")
             for tree in self.written
             for node in nodes.walk(tree)
-            if node.tag == "xacro:macro"
+            if node.tag in ("xacro:macro", "macro")
         )
 
     def node_at(self, origin: Origin | None) -> Node | None:
