@@ -21,7 +21,7 @@ from cartwheel.dialects.classic.drives.planar_move import PlanarMove
 from cartwheel.dialects.gz.velocity_control import VelocityControl
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
-from cartwheel.geometry import Pose, rotate
+from cartwheel.geometry import Pose, Vec3, rotate
 from cartwheel.graph import TWIST_STAMPED, TopicInfo
 from cartwheel.simulation.clock import NANOSECONDS
 
@@ -42,8 +42,8 @@ _CLIMB, _CLIMBING = 0.8, 4.0
 it turns, because a propeller's thrust depends on the square of its speed."""
 _MEASURED = 2.0
 _SETTLED = 0.01
-"""Increase from one measurement to the next, relative to the command, below which a base no longer
-accelerates."""
+"""Increase from one measurement to the next, or from the first half of one to the second, relative
+to the command, below which a base no longer accelerates."""
 _SLID = 0.01
 """Speed that a base of planar_move loses, also in Gazebo, if it slides with a friction coefficient
 of 1, m/s."""
@@ -66,6 +66,17 @@ class Motion(NamedTuple):
     """m/s."""
     turn: float
     """rad/s, to the left."""
+
+
+class _Measurement(NamedTuple):
+    """How a base moved while a command was published."""
+
+    motion: Motion
+    """The mean velocity."""
+    halves: tuple[Motion, Motion]
+    """Those of the first and of the second half."""
+    ahead: Facing
+    """The direction that counts as forward."""
 
 
 def drives(
@@ -195,26 +206,31 @@ def _driven(
         _drive_on(world, topic, Motion(0.0, 0.0, 0.0), _CLIMBING, climb=_CLIMB)
     wanted, speed_up = command
     _drive_on(world, topic, wanted, speed_up)
-    found, ahead = _measured(world, model, robot, topic, wanted, facing=facing, flying=flying)
+    found = _measured(world, model, robot, topic, wanted, facing=facing, flying=flying)
     waited = speed_up + _MEASURED
-    # Wheels that slide because of a small load need long to accelerate the base.
-    while waited < _LONGEST and not all(
-        abs(now - speed) <= TOLERANCE * abs(speed)
-        for now, speed in zip(found, wanted, strict=True)
-        if speed
+    # Wheels that slide because of a small load need long to accelerate the base, as do heavy ones,
+    # and a base that becomes too fast has the commanded velocity on the way.
+    while waited < _LONGEST and not (
+        all(
+            abs(now - speed) <= TOLERANCE * abs(speed)
+            for now, speed in zip(found.motion, wanted, strict=True)
+            if speed
+        )
+        and _increase(*found.halves, wanted) < _SETTLED
     ):
         before = found
-        found, ahead = _measured(world, model, robot, topic, wanted, facing=facing, flying=flying)
+        found = _measured(world, model, robot, topic, wanted, facing=facing, flying=flying)
         waited += _MEASURED
-        changes = [
-            (now - then) / speed
-            for now, then, speed in zip(found, before, wanted, strict=True)
-            if speed
-        ]
-        if max(changes) < _SETTLED:
+        if _increase(before.motion, found.motion, wanted) < _SETTLED:
             break
     look()
-    return found, ahead
+    return found.motion, found.ahead
+
+
+def _increase(before: Motion, after: Motion, wanted: Motion) -> float:
+    """The largest increase of a commanded part of a velocity, relative to the command."""
+    parts = zip(before, after, wanted, strict=True)
+    return max((now - then) / speed for then, now, speed in parts if speed)
 
 
 def _measured(
@@ -226,12 +242,11 @@ def _measured(
     *,
     facing: Facing | None,
     flying: bool,
-) -> tuple[Motion, Facing]:
-    """The velocity while a command is published, and the forward direction; see `_driven`."""
-    before, joints = model.pose, positions(world, model)
-    yaws = [_yaw(before)]
-    _drive_on(world, topic, wanted, _MEASURED, look=lambda: yaws.append(_yaw(model.pose)))
-    after = model.pose
+) -> _Measurement:
+    """The velocity while a command is published; see `_driven`."""
+    joints = positions(world, model)
+    poses = [model.pose]
+    _drive_on(world, topic, wanted, _MEASURED, look=lambda: poses.append(model.pose))
     speeds = {
         name: (end - joints[name]) / _MEASURED for name, end in positions(world, model).items()
     }
@@ -240,13 +255,29 @@ def _measured(
     free = flying or _is_pushed(model, robot, topic)
     facing = facing or (FORWARD if free else heading(robot, speeds))
     ahead = rotate(robot.description.canonical_pose.inverse().orientation, (*facing, 0))
-    x, y, _ = rotate(before.orientation, ahead)
+    middle = len(poses) // 2
+    parts = (poses, poses[: middle + 1], poses[middle:])
+    motion, *halves = (_velocity(part, ahead) for part in parts)
+    return _Measurement(motion, (halves[0], halves[1]), facing)
+
+
+def _velocity(poses: Sequence[Pose], forward: Vec3) -> Motion:
+    """The mean velocity along a path, in the frame at its start.
+
+    Args:
+        poses: At the rate of the commands.
+        forward: The direction that counts as forward in the frame of the poses.
+    """
+    seconds = (len(poses) - 1) / _RATE
+    before, after = poses[0], poses[-1]
+    x, y, _ = rotate(before.orientation, forward)
     length = math.hypot(x, y) or 1.0
     dx, dy = after.x - before.x, after.y - before.y
     # A base that is much too fast turns by more than half a turn while it is measured.
+    yaws = [_yaw(pose) for pose in poses]
     turned = sum(math.remainder(now - then, 2 * math.pi) for then, now in pairwise(yaws))
     along, across = (x * dx + y * dy) / length, (x * dy - y * dx) / length
-    return Motion(along / _MEASURED, across / _MEASURED, turned / _MEASURED), facing
+    return Motion(along / seconds, across / seconds, turned / seconds)
 
 
 def _take_off(world: World, topic: TopicInfo) -> bool:

@@ -1,0 +1,26 @@
+"""Bases that are driven forward and turned in place."""
+
+import pytest
+from tests.corpus.carts import RADIUS, cart, plugin, written
+
+from cartwheel.codes.robot import WHEEL_DIAMETER_MISMATCH
+from cartwheel.corpus import try_robot
+from cartwheel.corpus.driving import VELOCITY
+
+INERTIA = 0.2
+"""Of each wheel, kg m²: that of a flywheel."""
+
+
+@pytest.mark.parametrize("diameter", [RADIUS, 2 * RADIUS])
+def test_a_base_that_still_accelerates_is_measured_until_it_does_not(tmp_path, diameter):
+    """The torque accelerates it to the commanded velocity in the middle of the measurement."""
+    force = VELOCITY / 5.0 * (2.0 + 2 * INERTIA / RADIUS**2)
+    torque = f"<wheelTorque>{force * RADIUS / 2}</wheelTorque>"
+    drive = plugin(more=torque).replace("Diameter>0.1<", f"Diameter>{diameter}<")
+    heavy = cart().replace('iyy="1e-4" izz="2e-4"', f'iyy="{INERTIA}" izz="{INERTIA}"')
+    heavy = heavy.replace('ixx="1e-4"', f'ixx="{INERTIA}"')
+    verdict = try_robot(written(tmp_path, heavy, drive), standing=1.0)
+    (driven,) = verdict.drives
+    assert driven.error == pytest.approx(2 * RADIUS / diameter - 1.0, abs=0.02)
+    wrong = ("drive", WHEEL_DIAMETER_MISMATCH) if diameter == RADIUS else None
+    assert [(each.test, each.code) for each in verdict.faults[:1]] == ([wrong] if wrong else [])
