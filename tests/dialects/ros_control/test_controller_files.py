@@ -91,6 +91,21 @@ def test_a_file_that_is_missing_costs_what_it_would_start(tmp_path):
         assert started(world) == ["group"]
 
 
+@pytest.mark.wording
+def test_a_package_that_is_missing_is_named_where_its_file_is_stated(tmp_path):
+    urdf = tmp_path / "arm.urdf"
+    body = beam("beam", "world") + system(ros2_joint("beam_joint"))
+    plugin = ros2_plugin("$(find no_such_control)/config/c.yaml").replace("><param", ">\n<param")
+    urdf.write_text(robot(body, plugin))
+    with cw.World("empty") as world:
+        world.spawn(urdf)
+        (reported,) = (each for each in world.diagnostics if each.severity == "error")
+    assert reported.code is devices.CONTROLLERS_FILE_UNREADABLE
+    assert 'the package "no_such_control" was not found' in reported.message
+    lines = urdf.read_text().splitlines()
+    assert lines[reported.origin.line - 1].startswith("<parameters>")
+
+
 def test_a_file_of_another_computer_is_the_one_in_the_package(tmp_path):
     package = tmp_path / "my_arm"
     (package / "config").mkdir(parents=True)

@@ -22,6 +22,7 @@ from cartwheel.dialects.ros_control.files import (
     moved_file,
     ros2_file,
     stated_path,
+    why_missing,
 )
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import (
@@ -179,10 +180,15 @@ class Ros2Control(ControlPlugin):
                 self.part.report(diagnostic)
             if other is not None:
                 return other
+            written = self.tag.element.find_all("parameters")
+            at = next((each.origin for each in written if each.text.strip() == text), origin)
+            why, hint = why_missing(text, at)
             self.warn(
                 devices.CONTROLLERS_FILE_UNREADABLE,
-                f'<parameters>: the file "{text}" does not exist, so its controllers do not start',
+                f"<parameters>: {why}, so its controllers do not start",
                 severity="error",
+                at=at,
+                hint=hint,
                 values={"file": text},
             )
             return None

@@ -17,7 +17,7 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.launch_arguments import launch_arguments
 from cartwheel.dialects.ros_control.settings import Settings, merge
 from cartwheel.dialects.ros_control.substitution import substitute
-from cartwheel.errors import Diagnostic, Origin, PluginError
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, PluginError
 
 if TYPE_CHECKING:
     from cartwheel.dialects.ros_control.controller import Controller
@@ -342,6 +342,18 @@ def moved_file(text: str, origin: Origin) -> tuple[Path | None, list[Diagnostic]
     """
     packages = Packages(None if _is_from_service(origin) else Path(origin.file))
     return packages.elsewhere(text.strip(), origin), list(packages.moves())
+
+
+def why_missing(text: str, origin: Origin) -> tuple[str, str]:
+    """Why the file in a tag does not exist, such as a package that was not found, and a hint."""
+    plain = f'the file "{text}" does not exist', ""
+    if _is_from_service(origin) or "$(" not in text:
+        return plain
+    try:
+        Packages(Path(origin.file)).resolve(text, origin)
+    except DescriptionError as error:
+        return error.message, error.hint or ""
+    return plain
 
 
 def _is_from_service(origin: Origin) -> bool:
