@@ -3,6 +3,7 @@
 import pytest
 from tests.corpus.carts import RADIUS, cart, plugin, written
 
+from cartwheel.codes.devices import PLUGIN_PARAMETER_OBSOLETE
 from cartwheel.codes.robot import WHEEL_DIAMETER_MISMATCH
 from cartwheel.corpus import try_robot
 from cartwheel.corpus.driving import VELOCITY
@@ -24,3 +25,13 @@ def test_a_base_that_still_accelerates_is_measured_until_it_does_not(tmp_path, d
     assert driven.error == pytest.approx(2 * RADIUS / diameter - 1.0, abs=0.02)
     wrong = ("drive", WHEEL_DIAMETER_MISMATCH) if diameter == RADIUS else None
     assert [(each.test, each.code) for each in verdict.faults[:1]] == ([wrong] if wrong else [])
+
+
+@pytest.mark.parametrize("tag", ["torque", "wheelTorque"])
+def test_a_torque_that_gazebo_ignores_explains_why_a_heavy_base_is_slow(tmp_path, tag):
+    """With the default of 5 N m, it cannot push the casters, which slide."""
+    heavy = cart(friction=0.5).replace('mass value="2"', 'mass value="900"')
+    drive = plugin(more=f"<{tag}>600</{tag}>")
+    verdict = try_robot(written(tmp_path, heavy, drive), standing=1.0)
+    faults = [(each.code, each.source) for each in verdict.faults if each.test == "drive"]
+    assert faults == [(PLUGIN_PARAMETER_OBSOLETE, "file")] * (tag == "torque")

@@ -10,7 +10,13 @@ from pathlib import Path
 
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, world
-from cartwheel.corpus.drive_causes import cause_of_drive, drives_on, flywheel, is_free
+from cartwheel.corpus.drive_causes import (
+    cause_of_drive,
+    drives_on,
+    flywheel,
+    ignored_torque,
+    is_free,
+)
 from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through, lost_wheel
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
 from cartwheel.corpus.missing_movers import (
@@ -247,7 +253,8 @@ def _measured(
         if not drive.follows:
             found = explaining("drive", drive.topic)
             forward = cause_of_drive(found, 1.0 + drive.error)
-            yield Fault(test="drive", subject=drive.topic, reason=forward or unsteady)
+            reason = forward or unsteady or ignored_torque(found, 1.0 + drive.error)
+            yield Fault(test="drive", subject=drive.topic, reason=reason)
         if not drive.turns:
             reason = cause_of_drive(
                 explaining("turn", drive.topic),
@@ -258,7 +265,8 @@ def _measured(
             if reason is None and forward is not None:
                 # The radius of wheels that slide counts for the turn rate by an unknown factor.
                 reason = forward if forward.code is robot.WHEEL_DIAMETER_MISMATCH else None
-            yield Fault(test="turn", subject=drive.topic, reason=reason or unsteady)
+            reason = reason or unsteady or ignored_torque(found, 1.0 + drive.error_turn)
+            yield Fault(test="turn", subject=drive.topic, reason=reason)
         if not drive.slides:
             found = explaining("sideways", drive.topic)
             reason = cause_of_drive(found, 1.0 + drive.error_sideways, sideways=True)

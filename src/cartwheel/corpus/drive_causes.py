@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from cartwheel.checks.rules.wheels.wheel_separation import compensation
 from cartwheel.codes import robot, running
-from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW
+from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW, PLUGIN_PARAMETER_OBSOLETE
 from cartwheel.corpus.faults import most_severe
 from cartwheel.corpus.movers import managers, reports
 from cartwheel.description.model import PluginTag, RobotDescription
@@ -306,6 +306,21 @@ def flywheel(found: Iterable[Diagnostic], description: RobotDescription) -> Diag
         and each.values.get("link") in wheels
         and isinstance(ratio := each.values.get("ratio"), float)
         and ratio > _FLYWHEEL
+    )
+
+
+def ignored_torque(found: Iterable[Diagnostic], ratio: float) -> Diagnostic | None:
+    """The torque that Gazebo ignores and that is larger than the one it uses, if a base is slow."""
+    return next(
+        (
+            each
+            for each in found
+            if each.code is PLUGIN_PARAMETER_OBSOLETE
+            and isinstance(stated := each.values.get("stated"), float)
+            and isinstance(used := each.values.get("used"), float)
+            and abs(ratio) < 1.0 < stated / used
+        ),
+        None,
     )
 
 

@@ -39,7 +39,12 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                     yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
                         message=f"Gazebo 11 ignores <{name}>, so the wheel torque is "
                         f"{torque.default[0]:g} N m instead of {each.text.strip()} N m",
-                        values={"tag": name, "plugin": drive.tag.name},
+                        values={
+                            "tag": name,
+                            "plugin": drive.tag.name,
+                            "stated": nodes.number(each.text) or 0.0,
+                            "used": float(torque.default[0]),
+                        },
                         **edits.whole(
                             each, nodes.written(_TORQUE[_ros(drive)], {}, each.text.strip())
                         ),

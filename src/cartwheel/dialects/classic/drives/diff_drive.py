@@ -67,8 +67,8 @@ class DiffDriveParameters:
         role="wheel_torque",
         obsolete=("torque",),
         least=SMALLEST,
-        doc="Maximum motor torque of each wheel. Gazebo 11 ignores the spelling `<torque>`, so a "
-        f"value below {_TORQUE:g} N m has no effect in this spelling.",
+        doc="Maximum motor torque of each wheel. The spelling `<torque>` has no effect, as in "
+        f"Gazebo 11, which uses {_TORQUE:g} N m instead.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
@@ -158,11 +158,10 @@ class DiffDrive(Plugin[DiffDriveParameters]):
         if element.find("torque") and not any(
             map(element.find, ("wheelTorque", "max_wheel_torque"))
         ):
-            torque = max(torque, _TORQUE)
+            torque = _TORQUE
             self.warn(
                 devices.PLUGIN_PARAMETER_OBSOLETE,
-                f"Gazebo 11 ignores <torque> and uses {_TORQUE:g} N m; here, the wheel torque is "
-                f"the larger value, {torque:g} N m",
+                f"Gazebo 11 ignores <torque>, so the wheel torque is {torque:g} N m",
                 severity="info",
                 values={"parameter": "torque", "torque": torque},
             )
