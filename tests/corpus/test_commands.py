@@ -138,8 +138,16 @@ def test_a_robot_on_a_floating_joint_of_the_world_stands_on_the_ground(tmp_path)
         '<child link="base"/></joint>'
     )
     verdict = tried(tmp_path, world, BASE.format(mass=5))
+    assert verdict.stand.state == "yes"
     assert abs(verdict.stand.sunk) < 0.01
     assert verdict.good, verdict.faults
+
+
+def test_a_robot_that_defines_a_material_twice_does_not_load(tmp_path):
+    material = '<material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>'
+    verdict = tried(tmp_path, material * 2, BASE.format(mass=5))
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code.name, fault.source) == ("load", "name-taken", "file")
 
 
 WHEEL = (

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.checks.robot import Robot
-from cartwheel.codes import devices, files, robot, running, world
+from cartwheel.codes import devices, files, robot, running, tags, world
 from cartwheel.corpus.drive_causes import (
     cause_of_drive,
     drives_on,
@@ -111,6 +111,8 @@ def _faults(
         return
     if (unloaded := _unloaded(verdict, description)) is not None:
         yield Fault(test="load", reason=unloaded)
+    if (twice := _material_twice(description)) is not None:
+        yield Fault(test="load", reason=twice)
     if (plain := coded(verdict.observed, _NOT_EXPANDED)) is not None:
         yield Fault(test="load", reason=plain)
     stopped = _stopped(description)
@@ -179,6 +181,18 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
             if roots:
                 return each
     return None
+
+
+def _material_twice(description: RobotDescription) -> Diagnostic | None:
+    """The second definition of a material, for which neither ROS nor Gazebo loads a URDF."""
+    return next(
+        (
+            each
+            for each in description.diagnostics
+            if each.code is tags.NAME_TAKEN and each.values.get("tag") == "material"
+        ),
+        None,
+    )
 
 
 def _stopped(description: RobotDescription) -> Diagnostic | None:

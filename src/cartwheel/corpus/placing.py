@@ -57,7 +57,7 @@ def place(robot: RobotDescription) -> Pose:
         if (solid := solid_of(collision, link.name)) is not None
     ]
     box = bounds(clouds)
-    if any(joint.parent == "world" and joint.type != "floating" for joint in robot.joints):
+    if any(joint.parent == "world" for joint in robot.joints):
         lowest = 0.0 if box is None else float(np.round(box[0][2], 6))
         return Pose((0.0, 0.0, HIGH + max(0.0, -lowest))) @ robot.pose
     if box is None:

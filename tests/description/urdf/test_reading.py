@@ -395,6 +395,46 @@ def test_a_joint_that_mimics_one_without_a_position_moves_independently(kind):
         world.run(0.1)
 
 
+def test_a_material_without_a_name_ends_the_shapes_of_its_link():
+    """As in urdfdom, which skips the rest of the link."""
+    box = '<geometry><box size="1 1 1"/></geometry>'
+    seen = f'<visual name="{{}}">{box}{{}}</visual>'
+    nameless = '<material><color rgba="1 0 0 1"/></material>'
+    robot = load(
+        urdf(
+            '<link name="a">' + f"<collision>{box}</collision>",
+            seen.format("first", '<material name="m"/>'),
+            seen.format("second", nameless),
+            seen.format("third", ""),
+            BODY + "</link>",
+            link("b", BODY + seen.format("other", "") + f"<collision>{box}</collision>"),
+            joint("j", "a", "b"),
+        )
+    )
+    assert [each.name for each in robot.link("a").visuals] == ["first"]
+    assert not robot.link("a").collisions
+    assert robot.link("a").inertial is not None
+    assert len(robot.link("b").visuals) == len(robot.link("b").collisions) == 1
+    (reported,) = [each for each in robot.diagnostics if named(each) == "element-left-out"]
+    assert (reported.origin.line, reported.values["left_out"]) == (4, "collision")
+
+
+def test_a_floating_joint_of_the_world_leaves_its_link_free():
+    text = urdf(
+        '<link name="world"/>',
+        link("base", BODY + "<collision><geometry><sphere radius='0.1'/></geometry></collision>"),
+        joint("free", "world", "base", '<origin xyz="0 0 2"/>', "floating"),
+    )
+    robot = load(text)
+    assert not robot.joints
+    assert robot.link("base").pose == Pose((0, 0, 2))
+    with cw.World("empty") as world:
+        model = world.spawn(robot)
+        assert world.session.simulation.moves(model.name)
+        world.run(2.0)
+        assert model.pose.z == pytest.approx(-1.9, abs=0.01)
+
+
 def test_a_mesh_with_a_scale_of_0_is_left_out():
     robot = load(
         urdf(
@@ -481,7 +521,20 @@ WARNINGS = [
             '<material name="g"><color rgba="0 0 0 1"/></material>',
             link("a"),
         ),
-        "robot.urdf:3 warning material-differs",
+        "robot.urdf:3 error name-taken",
+    ),
+    (
+        urdf(
+            '<material name="g"><color rgba="1 1 1 1"/></material>',
+            '<link name="a">' + BODY,
+            '<visual><geometry><box size="1 1 1"/></geometry>',
+            '<material name="g"><color rgba="0 0 0 1"/></material></visual></link>',
+        ),
+        "robot.urdf:5 warning material-differs",
+    ),
+    (
+        urdf('<material name="g">', "<color/>", "</material>", link("a")),
+        "robot.urdf:3 warning tag-missing",
     ),
     (
         urdf('<material name="g"><color rgba="255 0 0 1"/></material>', link("a")),

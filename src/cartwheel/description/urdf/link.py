@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from cartwheel.codes import tags
@@ -46,9 +47,13 @@ def read_link(node: Node, ctx: UrdfContext) -> ReadLink:
     """
     name = node.require("name").strip()
     visuals: list[Visual] = []
+    nameless: Node | None = None
     for part in node.all("visual"):
+        material = part.child("material")
+        if nameless is None and material is not None and material.get("name") is None:
+            nameless = material
         visual = _visual(part, _numbered(f"{name}_visual", len(visuals)), ctx)
-        if visual is not None:
+        if visual is not None and nameless is None:
             visuals.append(visual)
     collisions: list[Collision] = []
     for part in node.all("collision"):
@@ -65,12 +70,35 @@ def read_link(node: Node, ctx: UrdfContext) -> ReadLink:
         collisions.append(
             Collision(name=title, aliases=aliases, pose=pose, shape=shape, origin=part.origin)
         )
+    if nameless is not None:
+        _warn_nameless(nameless, name, collisions, ctx)
+        collisions = []
     inertial = node.child("inertial")
     return ReadLink(
         link=Link(
             name=name, visuals=tuple(visuals), collisions=tuple(collisions), origin=node.origin
         ),
         inertial=read_inertial(inertial) if inertial is not None else None,
+    )
+
+
+def _warn_nameless(
+    material: Node, link: str, collisions: Sequence[Collision], ctx: UrdfContext
+) -> None:
+    """Warns about a visual's material without a name, at which urdfdom stops reading the link."""
+    lost = "this visual, the visuals after it"
+    if collisions:
+        lost += " and the collisions"
+    ctx.warn(
+        tags.ELEMENT_LEFT_OUT,
+        f'<material> has no name, so {lost} of link "{link}" are ignored, as in ROS and Gazebo',
+        origin=material.origin,
+        hint="Add the attribute name to <material>.",
+        values={
+            "tag": "material",
+            "link": link,
+            "left_out": "collision" if collisions else "visual",
+        },
     )
 
 

@@ -8,13 +8,32 @@ from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
 from cartwheel.description.model import Material, Rgba
 from cartwheel.description.urdf.context import UrdfContext
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import DescriptionError, Origin
 from cartwheel.similar_names import meant, suggestion
 
 
 def read_materials(robot: Node, ctx: UrdfContext) -> None:
-    """Reads the materials available to the whole robot, wherever they are defined."""
+    """Reads the materials available to the whole robot, wherever they are defined.
+
+    urdfdom refuses a robot that defines one outside its links twice.
+    """
+    seen: dict[str, Origin] = {}
     for node in robot.all("material"):
+        name = node.get("name")
+        if name is not None and name in seen:
+            ctx.report(
+                tags.NAME_TAKEN.diagnostic(
+                    f'the material "{name}" is defined twice, so ROS and Gazebo do not load the '
+                    "robot",
+                    origin=node.origin,
+                    hint=f"Remove one. The first definition is at {seen[name]}.",
+                    values={"tag": "material", "name": name},
+                )
+            )
+            _stated(node, name, ctx)
+            continue
+        if name is not None:
+            seen[name] = node.origin
         _define(node, ctx)
     for link in robot.children:
         if link.tag == "link":
@@ -77,9 +96,9 @@ def _stated(node: Node, name: str, ctx: UrdfContext) -> Material | None:
 
 def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
     """A material's colour; None if it is invalid and therefore ignored. Source: urdfdom."""
-    text = node.require("rgba")
-    values = text.split()
     try:
+        text = node.require("rgba")
+        values = text.split()
         if len(values) == 3:
             ctx.warn(
                 tags.VALUE_IGNORED,
@@ -90,9 +109,8 @@ def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
             values = [*values, "1"]
         r, g, b, a = numbers.vector(" ".join(values), 4, "color rgba", node.origin)
     except DescriptionError as error:
-        ctx.report(
-            loss(error, "the colour is ignored", severity="warning", code=tags.VALUE_IGNORED)
-        )
+        code = error.code if error.code is tags.TAG_MISSING else tags.VALUE_IGNORED
+        ctx.report(loss(error, "the colour is ignored", severity="warning", code=code))
         return None
     rgba = (_share(r), _share(g), _share(b), _share(a))
     if rgba != (r, g, b, a):

@@ -15,7 +15,7 @@ from cartwheel.description.elements.simulator import is_classic
 from cartwheel.description.elements.xml import Node, to_element, unread
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.inertia import LIGHTEST
-from cartwheel.description.model import Inertial, Link, RobotDescription
+from cartwheel.description.model import Inertial, Joint, Link, RobotDescription
 from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
 from cartwheel.description.sdf.inserting import insert
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
@@ -84,7 +84,7 @@ def read_urdf(
 
     tags = read_gazebo_tags(root, known, {joint.name: joint for joint in joints}, ctx)
     links = [_complete(part, tree, poses[part.link.name], tags, ctx) for part in parts]
-    joints = [tags.apply_to_joint(joint) for joint in joints]
+    joints = [tags.apply_to_joint(joint) for joint in joints if not _is_free(joint)]
     preserved = [joint.name for joint in joints if joint.preserve_fixed]
     links = name_collisions(links, tree, preserved)
     stated = {name: each.gravity for name, each in tags.links.items()}
@@ -198,6 +198,14 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
         return None
     rigid = fixed or any(joint.type == "fixed" for joint in tree.children[name])
     return judged_inertia(inertial, name, rigid=rigid, ctx=ctx)
+
+
+def _is_free(joint: Joint) -> bool:
+    """Whether a joint lets a link move freely in the world, as it does without the joint.
+
+    Gazebo leaves the joint out too.
+    """
+    return joint.type == "floating" and joint.parent == WORLD
 
 
 def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link]:
