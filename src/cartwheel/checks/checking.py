@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.checks import nodes
+from cartwheel.checks.controller_claims import idle_joints
 from cartwheel.checks.controller_search import controller_files_of
 from cartwheel.checks.repairs import displaced, mend
 from cartwheel.checks.reported import passed
@@ -154,6 +155,7 @@ def _subject(
     for robot in robots:
         robot.controlled = controlled_sides(subject, robot)
         robot.steered = controlled_steering(subject, robot)
+        robot.idle = idle_joints(subject, robot)
     return subject
 
 

@@ -138,6 +138,48 @@ def wheels_of(robot: Robot, controller: Controller) -> list[str]:
     return list(dict.fromkeys(name for name in named if name in robot.joints))
 
 
+def idle_joints(subject: Subject, robot: Robot) -> frozenset[str]:
+    """Joints that are available to controllers by efforts only, but that no controller commands.
+
+    Nothing holds such a joint, so a wheel on it rolls freely. Empty if the controllers are unknown.
+    """
+    tags = [*managers(robot, ros2=True), *managers(robot, ros2=False)]
+    files = [file for owner, file in subject.control if owner is robot]
+    selected = [each for owner, each in subject.launched if owner is robot]
+    lost = {
+        str(name)
+        for each in selected
+        for problem in each.problems
+        for name in _listed(problem, "controllers") or (problem.values.get("controller"),)
+    }
+    started = [
+        controller
+        for file in files
+        for controller in file.controllers
+        if controller.name not in lost
+        and all(not each.names or controller.name in each.names for each in selected)
+    ]
+    if tags and (not files or any(file.problem is not None for file in files)):
+        return frozenset()
+    if any(commands_joints(each) and not is_supported(each) for each in started):
+        return frozenset()
+    claimed = {claim.joint for each in started for claim in claims(each)}
+    claimed |= {name for each in robot.drives for name in each.joints}
+    offered = [offers(robot, ros2=ros2) for ros2 in (True, False)]
+    return frozenset(
+        name
+        for each in offered
+        for name, interfaces in each.items()
+        if name not in claimed and {kind for kind, _ in interfaces} <= {"effort", ""}
+        if all({kind for kind, _ in other.get(name, ())} <= {"effort", ""} for other in offered)
+    )
+
+
+def _listed(each: Diagnostic, key: str) -> tuple[object, ...]:
+    values = each.values.get(key)
+    return values if isinstance(values, tuple) else ()
+
+
 def _interfaces(controller: Controller, row: Row) -> list[str]:
     """The interfaces by which a controller commands the joints of a parameter."""
     if row.interface != OWN:

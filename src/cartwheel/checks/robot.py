@@ -79,6 +79,8 @@ class Robot:
         """The wheels of controllers that drive the base."""
         self.steered: tuple[str, ...] = ()
         """Joints that the steering controllers turn."""
+        self.idle: frozenset[str] = frozenset()
+        """Joints for controllers that nothing commands or holds."""
 
     @cached_property
     def collisions(self) -> dict[str, list[Solid]]:

@@ -155,7 +155,7 @@ def turn_ratio(
     skids = any(each.friction[0] < each.friction[1] or dragged for each in others)
     spread = {round(each.x, 3) for each in contacts}
     # What another plugin drives is unknown here.
-    elsewhere = robot.driven - {joint.name for joint in driven}
+    elsewhere = robot.driven - robot.idle - {joint.name for joint in driven}
     also = {
         name
         for each in elsewhere
@@ -225,7 +225,7 @@ def braking(robot: Robot, driven: Sequence[Joint]) -> Braking | None:
         and rolls_only_forward(robot, joint, driven)
         and wheel_radius(robot, joint)
     ]
-    passive = [each for each in others if each.name not in robot.driven]
+    passive = [each for each in others if each.name not in robot.driven - robot.idle]
     braked = tuple(each for each in passive if each.axis.damping or each.axis.friction)
     if center is None or not braked:
         return None

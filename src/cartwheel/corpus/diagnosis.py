@@ -270,8 +270,9 @@ def _measured(
             reason = forward or unsteady or ignored_torque(found, 1.0 + drive.error)
             yield Fault(test="drive", subject=drive.topic, reason=reason)
         if not drive.turns:
+            found = explaining("turn", drive.topic)
             reason = cause_of_drive(
-                explaining("turn", drive.topic),
+                found,
                 1.0 + drive.error_turn,
                 turning=True,
                 arc=drive.turning == "arc",

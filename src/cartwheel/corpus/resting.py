@@ -70,7 +70,9 @@ def dragging(
         if held_by(world, model, holder.name) > _SLACK * weight * robot.size:
             continue
         mu = [each.surface.mu1 for each in robot.links[name].collisions]
-        if all(each is not None and each <= _SLIPPERY for each in mu) or _rolls(world, robot, name):
+        if all(each is not None and each <= _SLIPPERY for each in mu):
+            continue
+        if _rolls(world, model, robot, name, _SLACK * weight * robot.size):
             continue
         yield robot_codes.BODY_ON_GROUND.diagnostic(
             message=f'link "{name}" rests on the ground and carries {load / weight:.0%} of the '
@@ -199,11 +201,19 @@ def _holder(robot: Robot, link: str) -> Joint | None:
     return joint if level or joint.type == "prismatic" else None
 
 
-def _rolls(world: World, robot: Robot, link: str) -> bool:
-    """Whether a link is a round wheel that nothing drives."""
+def _rolls(world: World, model: Model, robot: Robot, link: str, slack: float) -> bool:
+    """Whether a link is a round wheel that nothing drives.
+
+    A joint for controllers has a servo, which has no effort if no controller commands it. `slack`
+    is the largest effort that counts as none, N m.
+    """
     joint = robot.inbound.get(robot.rigid_root(link))
-    motors = {name for entry in world.session.simulation.engine.entries for name in entry.motors}
-    if joint is None or not joint.turns or joint.name in motors:
+    entries = world.session.simulation.engine.entries
+    motors = {name: motor for entry in entries for name, motor in entry.motors.items()}
+    if joint is None or not joint.turns:
+        return False
+    motor = motors.get(joint.name)
+    if motor is not None and (motor.mode != "servo" or held_by(world, model, joint.name) > slack):
         return False
     widths = wheel_widths(robot, joint, robot.collisions)
     return widths is None or bool(widths.min() >= ROUND * widths.max())
