@@ -79,6 +79,21 @@ def test_a_wrong_size_explains_the_turn_rate_of_two_drives_before_their_number(t
     assert reasons(verdict) == {"turn": WHEEL_SEPARATION_MISMATCH}
 
 
+def test_of_two_drives_only_the_last_one_has_an_effect(tmp_path):
+    """In Gazebo, each drive commands its wheels in each update, with 0 if it has no command."""
+    again = plugin().replace('name="drive"', 'name="again"')
+    again = again.replace("</plugin>", "<commandTopic>second</commandTopic></plugin>")
+    verdict = try_robot(written(tmp_path, cart(), plugin(), again), standing=1.0)
+    moved = {each.topic: each.passes for each in verdict.drives}
+    assert moved == {"/cmd_vel": False, "/second": True}
+    assert all(abs(each.measured) < 1e-3 for each in verdict.drives if not each.passes)
+    assert {(each.test, each.subject, each.code) for each in verdict.faults} == {
+        ("drive", "/cmd_vel", JOINT_DRIVEN_TWICE),
+        ("turn", "/cmd_vel", JOINT_DRIVEN_TWICE),
+    }
+    assert verdict.outcome == "file"
+
+
 def test_transmissions_that_hold_the_wheels_are_tested_without_their_manager(tmp_path):
     """The manager also runs a controller, without which the drive may not steer."""
     arm = (

@@ -1057,7 +1057,7 @@ def test_wheels_whose_drive_was_in_an_absent_file_are_a_fault(tmp_path):
 def test_a_robot_whose_body_was_in_an_absent_file_falls_because_of_that(tmp_path):
     """Its mast is left, and tips over."""
     path = tmp_path / "cart.xacro"
-    include = '<xacro:include filename="body.xacro"/><xacro:body name="base"/>'
+    include = '<xacro:include filename="$(find far_cart)/body.xacro"/><xacro:body name="base"/>'
     mast = BOX.format(name="mast", at="0.3 0 0", size="0.02 0.02 0.5") + (
         '<joint name="mast_joint" type="fixed"><parent link="base"/><child link="mast"/></joint>'
     )

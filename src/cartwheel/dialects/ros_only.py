@@ -5,8 +5,9 @@ From the branches ``noetic-devel`` and ``ros2`` of gazebo_ros_pkgs, and from gaz
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -15,8 +16,8 @@ from cartwheel.description.files.package_folders import packages_below
 from cartwheel.description.files.regular_files import read_start
 from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.files.ros_version import ros_version
-from cartwheel.description.model import PluginTag, RobotDescription
-from cartwheel.dialects.catalogue import short_name
+from cartwheel.description.model import Element, PluginTag, RobotDescription
+from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.errors import Diagnostic
 
 _RAYS, _CAMERA = "libgazebo_ros_ray_sensor.so", "libgazebo_ros_camera.so"
@@ -56,6 +57,8 @@ _REQUIRED: Mapping[str, tuple[tuple[str, str], ...]] = {
 """Tags without which a plugin of both versions does not work: in ROS 1, and in ROS 2."""
 
 
+_ROS_PACKAGE = "gazebo_ros_"
+"""Beginning of the names of gazebo_ros_pkgs' plugins."""
 _PACKAGES, _BYTES = 200, 100_000
 """Packages of a repository whose CMakeLists.txt is searched, and bytes of each file."""
 
@@ -107,6 +110,39 @@ def other_tags(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:
                 values={"plugin": tag.filename, "tag": theirs, "ros": float(own)},
             )
     return None
+
+
+def unread_tags(robot: RobotDescription, tag: PluginTag) -> Iterator[tuple[Element, str]]:
+    """The tags of a plugin that only ROS 1 reads, each with what to write in ROS 2.
+
+    None unless the plugin is one of gazebo_ros_pkgs for ROS 2, whose tags contain no capital
+    letters, by the package of the robot or, if that is unknown, by its ``<ros>`` element.
+    """
+    name, file = short_name(tag.filename), Path(robot.origin.file)
+    plugin = plugin_named(tag.filename)
+    own = ros_version(file) or (2 if tag.element.find("ros") is not None else None)
+    if own != 2 or plugin is None or not name.startswith(_ROS_PACKAGE):
+        return
+    if name in _REPLACEMENTS[1]:
+        return
+    advice = {"robotNamespace": "In ROS 2, write <ros><namespace>."}
+    for item in dataclasses.fields(plugin.parameters):
+        tags: tuple[str, ...] = item.metadata["tags"]
+        new = next((each for each in tags if each.islower()), None)
+        for each in tags if new is not None else ():
+            if each.endswith("Topic") or each.startswith("topic"):
+                advice[each] = "In ROS 2, rename topics with <ros><remapping>."
+            elif each == "updateRate" and plugin.for_sensor:
+                advice[each] = "In ROS 2, state the <update_rate> of the <sensor>."
+            else:
+                advice[each] = f"In ROS 2, write <{new}>."
+    found = [
+        (each, advice[each.tag])
+        for each in tag.element.children
+        if each.tag in advice and not each.tag.islower()
+    ]
+    if found and not _builds(file, name):
+        yield from found
 
 
 def other_ros(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:

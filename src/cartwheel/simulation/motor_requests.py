@@ -47,6 +47,7 @@ class MotorRequests(Requests):
         beyond: bool = False,
         replaces_friction: bool = False,
         yields: bool = False,
+        repeats: bool = False,
         origin: Origin | None = None,
     ) -> MotorHandle:
         """A motor that holds a joint's velocity with at most `max_effort` N m or N.
@@ -62,6 +63,8 @@ class MotorRequests(Requests):
                 parameter for friction and the maximum torque of a motor.
             yields: Whether the caller leaves the joint to others while it has no command for it. It
                 then reports itself when both drive the joint.
+            repeats: Whether the caller is a drive of Gazebo, which commands the joint at each
+                update, even with 0. Of several such drives, only the last one has an effect.
             origin: Origin of the request, for errors.
         """
         self.joint(joint, origin=origin)
@@ -77,7 +80,7 @@ class MotorRequests(Requests):
             motor = self._share(motor, max_effort)
         elif motor is None or (not yields and all(each.yields for each in self._drives(joint))):
             motor = self._entry.motors[joint] = made
-        handle = MotorHandle(motor, self._stop(joint), yields=yields)
+        handle = MotorHandle(motor, self._stop(joint), yields=yields, repeats=repeats)
         self._add_drive(handle, origin)
         return handle
 
@@ -154,7 +157,14 @@ class MotorRequests(Requests):
         if handle.yields or not rivals:
             return
         kinds = {type(each) for each in (*rivals, handle)}
-        if len(kinds) == 1:
+        repeating = [each for each in rivals if isinstance(each, MotorHandle) and each.repeats]
+        if isinstance(handle, MotorHandle) and handle.repeats and repeating:
+            for each in repeating:
+                each.overrule()
+            self.report_two_drives(
+                joint, "as in Gazebo, only the commands of the last one have an effect", origin
+            )
+        elif len(kinds) == 1:
             self.report_two_drives(joint, "the last command is used", origin)
         else:
             self.report_two_drives(joint, "the efforts of both plugins are added", origin)

@@ -61,6 +61,7 @@ class Wheel:
             max_effort=max_effort,
             beyond=beyond,
             replaces_friction=max_effort is not None,
+            repeats=True,
             origin=origin,
         )
 

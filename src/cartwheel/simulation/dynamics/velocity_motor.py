@@ -116,14 +116,20 @@ class MotorHandle:
         motor: The motor.
         stop: Stops the motor at the joint's limits; bound before this handle.
         yields: Whether the owner of the handle leaves the joint to others while it has no command.
+        repeats: Whether its owner commands the joint at each update; see `overrule`.
     """
 
     rivalled = False
     """Whether another handle, which does not yield, drives the joint."""
+    overruled = False
+    """Whether the commands have no effect; see `overrule`."""
 
-    def __init__(self, motor: Motor, stop: JointStop, *, yields: bool = False) -> None:
+    def __init__(
+        self, motor: Motor, stop: JointStop, *, yields: bool = False, repeats: bool = False
+    ) -> None:
         self.motor = motor
         self.stop = stop
+        self.repeats = repeats
         self.yields = yields
         """Whether the owner of the handle leaves the joint to others while it has no command."""
         self.target = 0.0
@@ -142,7 +148,13 @@ class MotorHandle:
 
     def refresh(self, model: Any) -> None:  # noqa: ARG002 - handles are refreshed alike
         """Finds where to write commands, after the limits of the joint may have changed."""
-        self.rotors, self.dof = self.stop.place
+        if not self.overruled:
+            self.rotors, self.dof = self.stop.place
+
+    def overrule(self) -> None:
+        """Makes the commands ineffective, because a later handle repeats its own at each update."""
+        self.overruled = True
+        self.rotors, self.dof = [0.0], 0
 
     @property
     def turns(self) -> bool:

@@ -10,6 +10,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element, PluginTag, Sensor
+from cartwheel.dialects.ros_only import unread_tags
 from cartwheel.errors import Code, Diagnostic
 
 _OUTER = frozenset({"world", "map", "odom", "earth", ""})
@@ -32,6 +33,7 @@ def frame_unknown(subject: Subject) -> Iterator[Diagnostic]:
         return
     for robot, tag, _ in _plugins(subject):
         frames = plugin_tags.tags_with(tag.filename, "frame")
+        frames -= {each.tag for each, _ in unread_tags(robot.description, tag)}
         for element in tag.element.children:
             name = element.text.strip().lstrip("/")
             if element.tag not in frames or name in _OUTER or name in _known(robot):

@@ -9,7 +9,7 @@ from cartwheel.checks import edits, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
-from cartwheel.dialects.ros_only import other_ros, other_tags
+from cartwheel.dialects.ros_only import other_ros, other_tags, unread_tags
 from cartwheel.dialects.substitutes import substitute
 from cartwheel.errors import Diagnostic
 from cartwheel.similar_names import meant_one
@@ -59,6 +59,23 @@ def plugin_of_other_ros(subject: Subject) -> Iterator[Diagnostic]:
             found = other_ros(robot.description, tag) or other_tags(robot.description, tag)
             if found is not None:
                 yield found
+
+
+@rule(devices_codes.PLUGIN_PARAMETER_IGNORED)
+def tags_of_ros1(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for tag, _ in robot.plugins():
+            if other_tags(robot.description, tag) is not None:
+                continue
+            for element, advice in unread_tags(robot.description, tag):
+                yield devices_codes.PLUGIN_PARAMETER_IGNORED.diagnostic(
+                    f'<{element.tag}> has no effect in Gazebo: the plugin "{tag.filename}" of ROS '
+                    "2 reads no tags with capital letters",
+                    values={"tag": element.tag, "plugin": tag.filename},
+                    origin=element.origin,
+                    mark=f"<{element.tag}",
+                    hint=advice,
+                )
 
 
 def _plain_file(name: str) -> str:

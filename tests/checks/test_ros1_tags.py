@@ -1,0 +1,57 @@
+"""Tags of ROS 1's plugins in packages for ROS 2, which Gazebo does not read."""
+
+import pytest
+
+from cartwheel.checks import check
+from cartwheel.codes.devices import FRAME_UNKNOWN, PLUGIN_PARAMETER_IGNORED
+
+AMENT = "<buildtool_depend>ament_cmake</buildtool_depend>"
+CATKIN = "<buildtool_depend>catkin</buildtool_depend>"
+CAMERA = (
+    '<robot name="cart"><link name="body"><inertial><mass value="1"/>'
+    '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>'
+    '<gazebo reference="body"><sensor name="eye" type="camera"><camera><image><width>32</width>'
+    "<height>24</height></image></camera>"
+    '<plugin name="eye" filename="{filename}">{tags}</plugin></sensor></gazebo></robot>'
+)
+
+
+@pytest.fixture
+def ignored(tmp_path):
+    def run(written, depend, filename="libgazebo_ros_camera.so"):
+        (tmp_path / "package.xml").write_text(f"<package><name>cart</name>{depend}</package>")
+        file = tmp_path / "cart.urdf"
+        file.write_text(CAMERA.format(tags=written, filename=filename))
+        found = check(file).findings
+        tags = [each.values["tag"] for each in found if each.code is PLUGIN_PARAMETER_IGNORED]
+        # What is not read names no link.
+        unknown = any(each.code is FRAME_UNKNOWN for each in found)
+        assert unknown == ("frameName" in written and not tags)
+        return tags
+
+    return run
+
+
+OLD = (
+    "<cameraName>front</cameraName><frameName>optical</frameName><robotNamespace>a</robotNamespace>"
+)
+
+
+@pytest.mark.parametrize(
+    ("depend", "tags", "expected"),
+    [
+        (AMENT, OLD, ["cameraName", "frameName", "robotNamespace"]),
+        ("", f"<ros/>{OLD}", ["cameraName", "frameName", "robotNamespace"]),
+        (CATKIN, OLD, []),
+        ("", OLD, []),
+        (AMENT, "<camera_name>front</camera_name><frame_name>body</frame_name>", []),
+    ],
+)
+def test_tags_with_capital_letters_are_those_of_ros1(ignored, depend, tags, expected):
+    assert ignored(tags, depend) == expected
+
+
+def test_a_plugin_that_the_repository_builds_may_read_any_tags(ignored, tmp_path):
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "CMakeLists.txt").write_text("add_library(gazebo_ros_camera SHARED camera.cpp)")
+    assert ignored(OLD, AMENT) == []
