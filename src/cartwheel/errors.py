@@ -361,7 +361,7 @@ class UnknownNameError(CartwheelError):
             message or f'{kind} "{shown}" does not exist',
             code=code,
             origin=origin,
-            hint=suggested(close, known),
+            hint=suggested(close, known) if known or not message else "",
             values={"kind": kind, "name": shown, "meant": close[0] if close else ""},
         )
 

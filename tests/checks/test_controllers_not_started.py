@@ -107,6 +107,25 @@ def test_a_type_that_the_repository_exports_exists(tmp_path, exported, severity,
     assert bool(caught.value.values["meant"]) == meant
 
 
+@pytest.mark.wording
+@pytest.mark.parametrize(
+    ("kind", "meant"),
+    [
+        ("my_impedance_controller/Controller", ""),
+        ("my_position_controllers/JointPositionController", ""),
+        ("position_controller/JointPositionController", "position_controllers"),
+        ("position_controllers/JointPositionControler", "position_controllers"),
+    ],
+)
+def test_a_type_of_a_package_with_another_name_may_exist(kind, meant):
+    with pytest.raises(UnknownNameError) as caught:
+        find_type(kind, ros2=False)
+    assert str(caught.value.values["meant"]).partition("/")[0] == meant
+    said = "does not exist" if meant else "is not supported"
+    assert caught.value.message == f'controller type "{kind}" {said}'
+    assert bool(caught.value.hint) == bool(meant)
+
+
 def test_the_names_that_are_kept_of_a_file_are_bounded(tmp_path):
     """A repository may contain thousands of such files."""
     names = "".join(f'<class name="own/Controller{number}"/>' for number in range(500))

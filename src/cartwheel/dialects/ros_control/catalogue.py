@@ -11,9 +11,11 @@ from cartwheel.description.files.plugin_xml import exporting_file
 from cartwheel.dialects.generated import CONTROLLERS
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.errors import UnknownNameError
-from cartwheel.similar_names import LONGEST, SIMILAR, closest
+from cartwheel.similar_names import LONGEST, meant_one
 
 ACKERMANN = "ackermann_steering_controller/AckermannSteeringController"
+_MISSPELT = 0.85
+"""Minimum similarity of the name of a misspelt package to the correct one."""
 
 
 @functools.cache
@@ -54,7 +56,17 @@ def find_type(name: str, *, ros2: bool, file: str = "") -> type[Controller]:
     if exporting is not None:
         message = f'controller type "{shown}", which "{exporting.name}" exports, is not supported'
         raise UnknownNameError("controller type", name, (), code=code, message=message)
-    packages = {each.partition("/")[0] for each in known}
-    foreign = plain.partition("/")[0] not in packages and not closest(plain, known, SIMILAR)
-    message = f'controller type "{shown}" is not supported' if foreign else ""
-    raise UnknownNameError("controller type", name, known, code=code, message=message)
+    if "/" in plain and not _is_misspelt(
+        plain.partition("/")[0], {each.partition("/")[0] for each in known}
+    ):
+        # The package may be anyone's.
+        message = f'controller type "{shown}" is not supported'
+        raise UnknownNameError("controller type", name, (), code=code, message=message)
+    raise UnknownNameError("controller type", name, known, code=code)
+
+
+def _is_misspelt(package: str, known: set[str]) -> bool:
+    """Whether the package of a controller type is a known one, or is misspelt."""
+    words = package.count("_")
+    alike = {each for each in known if each.count("_") == words}
+    return package in known or bool(meant_one(package, alike, cutoff=_MISSPELT))
