@@ -150,7 +150,8 @@ def gave_way(
         yield robot_codes.JOINTS_UNDRIVEN.diagnostic(
             f"{why}, so the robot rolls"
             if robot.joints[most].turns
-            else f'{why}, so they give way: "{most}" moved by {found[most]:.2g}',
+            else f'{why}, so they give way: "{most}" moved by {found[most]:.2g} '
+            f"{'m' if robot.joints[most].type == 'prismatic' else 'rad'}",
             values={
                 "joints": tuple(found),
                 **({} if robot.joints[most].turns else {"moved": found[most]}),

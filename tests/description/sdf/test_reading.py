@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from tests.coded import coded
+from tests.coded import coded, raises
 
 from cartwheel.codes import robot, tags
 from cartwheel.description import load_text
@@ -65,3 +65,11 @@ def test_a_box_without_thickness_is_loaded(size):
     (visual,) = robot.links[0].visuals
     assert min(visual.shape.size) > 0
     assert coded(robot.diagnostics, tags.VALUE_IGNORED)
+
+
+def test_a_missing_mesh_is_not_why_a_model_cannot_be_loaded():
+    mesh = "<geometry><mesh><uri>no_such.stl</uri></mesh></geometry>"
+    text = f"""<sdf version="1.7"><model name="m"><link name="a"><visual name="v">{mesh}</visual>
+        </link><link name="b"><pose relative_to="absent"/></link></model></sdf>"""
+    with raises(tags.NAME_UNKNOWN, name="absent"):
+        load_text(text)

@@ -104,12 +104,23 @@ def read_sdf(
     return replace(described, diagnostics=diagnostics)
 
 
+_SHAPES = ("visual", "collision")
+
+
 def _whole(node: Node, ctx: Context) -> Model:
-    """A model that stands alone; where it lacks a file, that is its error."""
+    """A model that stands alone; where it lacks an included model, that is its error."""
     try:
         return read_model(node, ctx)
     except DescriptionError as error:
-        lacking = next((each for each in ctx.diagnostics if each.severity == "error"), None)
+        # A missing mesh makes no name unknown.
+        lacking = next(
+            (
+                each
+                for each in ctx.diagnostics
+                if each.severity == "error" and each.values.get("left_out") not in _SHAPES
+            ),
+            None,
+        )
         if lacking is None:
             raise
         raise DescriptionError(
