@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator, Sequence
 
 from cartwheel.checks import nodes, plugin_tags
-from cartwheel.checks.robot import Drive, Robot
+from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
+from cartwheel.checks.rules.wheels.wheel_sides import controlled, ways_of
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
     CAMBER,
@@ -40,33 +41,66 @@ _TOE, _CROOKED = 0.004, 0.2
 @rule(robot_codes.WHEEL_AXIS_MISALIGNED)
 def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
     yield from _mecanum(subject)
+    reported: set[str] = set()
     for robot, drive, left, right in wheel_pairs(subject):
-        senses = axis_senses(robot, left, right)
-        toward_left = axle_toward_left(robot, left, right)
-        if toward_left is None:
+        every = _are_reversed(robot, drive.left, drive.right)
+        yield from _of_pair(robot, left, right, reported, every=every)
+    for robot, controller, sides in controlled(subject):
+        lefts, rights = ([each.text.strip() for each in side] for side in sides)
+        if len(lefts) != len(rights):
             continue
-        both = all(each < -CAMBER for each in senses)
-        if both and faces_backwards(robot, left, right):
-            continue
-        for joint, sense in zip((left, right), senses, strict=True):
-            if sense > -CAMBER:
-                axis = nodes.child(robot.joint_node(joint.name), "axis")
-                stated = nodes.numbers(nodes.text_of(axis, "xyz"), 3)
-                turns = joint.type != "fixed" and (stated is None or any(stated))
-                if sense < CAMBER and turns:
-                    yield _not_across(robot, joint, toward_left)
-                continue
-            yield _backwards(
-                robot,
-                joint,
-                "" if both else " and the other wheel's axis to the left",
-                every=both and _are_reversed(robot, drive),
-            )
+        ways = ways_of(controller)
+        every = _are_reversed(robot, lefts, rights)
+        for names in zip(lefts, rights, strict=True):
+            if (pair := placed_pair(robot, *names)) is not None:
+                yield from _of_pair(robot, *pair, reported, ways=ways, every=every)
 
 
-def _are_reversed(robot: Robot, drive: Drive) -> bool:
+def _of_pair(
+    robot: Robot,
+    left: Joint,
+    right: Joint,
+    reported: set[str],
+    *,
+    ways: tuple[float, float] = (1.0, 1.0),
+    every: bool,
+) -> Iterator[Diagnostic]:
+    """The diagnostics for a pair of wheels.
+
+    Args:
+        robot: The robot.
+        left: Joint of the left wheel.
+        right: Joint of the right wheel.
+        reported: The joints about which there is a diagnostic, to which this adds.
+        ways: The signs with which the commands of the wheels are multiplied.
+        every: Whether the axes of all wheels of the drive point to the right.
+    """
+    senses = axis_senses(robot, left, right)
+    toward_left = axle_toward_left(robot, left, right)
+    if toward_left is None:
+        return
+    both = all(sense * way < -CAMBER for sense, way in zip(senses, ways, strict=True))
+    if both and faces_backwards(robot, left, right):
+        return
+    for joint, sense, way in zip((left, right), senses, ways, strict=True):
+        if joint.name in reported:
+            continue
+        if sense > -CAMBER:
+            axis = nodes.child(robot.joint_node(joint.name), "axis")
+            stated = nodes.numbers(nodes.text_of(axis, "xyz"), 3)
+            turns = joint.type != "fixed" and (stated is None or any(stated))
+            if sense < CAMBER and turns:
+                reported.add(joint.name)
+                yield _not_across(robot, joint, toward_left)
+        elif way > 0:
+            reported.add(joint.name)
+            more = "" if both else " and the other wheel's axis to the left"
+            yield _backwards(robot, joint, more, every=both and every)
+
+
+def _are_reversed(robot: Robot, left: Sequence[str], right: Sequence[str]) -> bool:
     """Whether the axes of all wheels of a drive point to the right of the robot."""
-    pairs = [placed_pair(robot, *names) for names in zip(drive.left, drive.right, strict=False)]
+    pairs = [placed_pair(robot, *names) for names in zip(left, right, strict=False)]
     senses = [axis_senses(robot, *pair) for pair in pairs if pair is not None]
     return all(each and max(each) < -CAMBER for each in senses)
 

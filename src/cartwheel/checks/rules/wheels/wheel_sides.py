@@ -35,23 +35,27 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
         if element is not None and not is_legacy(drive):
             swap = edits.whole(element, nodes.written(element.tag, {}, right.name), mark=left.name)
             yield from _judged(robot, left, right, "", **swap)
-    for robot, controller, name, left, right in _of_controllers(subject):
+    for robot, controller, sides in controlled(subject):
+        name = sides[0][0]
+        pair = placed_pair(robot, *(side[0].text.strip() for side in sides))
+        if pair is None:
+            continue
+        left, right = pair
         owner = f'controller "{controller.name}": '
-        ways = _ways(controller)
+        ways = ways_of(controller)
         yield from _judged(robot, left, right, owner, ways, origin=name.origin, mark=left.name)
 
 
-def _of_controllers(subject: Subject) -> Iterator[tuple[Robot, Controller, Value, Joint, Joint]]:
-    """The first wheels of the controllers, with the value that names the left one."""
+def controlled(subject: Subject) -> Iterator[tuple[Robot, Controller, list[list[Value]]]]:
+    """The controllers that drive wheels, with the names of the left and of the right ones."""
     for robot, file in subject.control:
         for controller in file.controllers:
             sides = claimed.wheel_sides(controller)
-            pair = placed_pair(robot, *(side[0].text.strip() for side in sides)) if sides else None
-            if pair is not None:
-                yield robot, controller, sides[0][0], *pair
+            if sides:
+                yield robot, controller, sides
 
 
-def _ways(controller: Controller) -> tuple[float, float]:
+def ways_of(controller: Controller) -> tuple[float, float]:
     """The signs of the multipliers with which a controller turns the wheels of each side."""
     left, right = (
         each.number if each is not None and each.number is not None else 1.0
