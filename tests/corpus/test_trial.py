@@ -1177,6 +1177,22 @@ def test_a_topic_that_states_a_rate_and_is_silent_is_named():
         assert listened(world) == (2, ("/never",))
 
 
+@pytest.mark.parametrize("rate", [0.1, 0.2])
+def test_a_topic_with_a_period_of_several_seconds_is_not_silent_before_it(rate):
+    with World() as world:
+        slow = world.graph.advertise("/slow", "std_msgs/msg/Float64", rate=rate)
+        world.graph.advertise("/never", "std_msgs/msg/Float64", rate=rate)
+        world.every(rate, lambda: slow.publish({"data": 1.0}))
+        assert listened(world) == (3, ("/never",))
+
+
+def test_a_topic_too_slow_to_wait_for_is_not_called_silent():
+    with World() as world:
+        world.graph.advertise("/hourly", "std_msgs/msg/Float64", rate=1 / 3600)
+        assert listened(world) == (2, ())
+        assert world.time < 60.0
+
+
 def test_a_model_named_as_the_ground_is_tried_beside_it(tmp_path):
     path = tmp_path / "model.sdf"
     path.write_text("""<sdf version="1.6"><model name="ground_plane"><static>true</static>

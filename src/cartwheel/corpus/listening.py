@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
 
 from cartwheel.api import World
 from cartwheel.dialects.ros_control.files import ControllerFiles
-from cartwheel.graph import Subscription
+from cartwheel.graph import Publisher, Subscription
 
 LISTENING = 1.0
 """Time in which a topic with a stated rate of some Hz must publish, s."""
 _LONGEST = 5.0
+_PATIENCE = 20.0
+"""Time in which a topic with a lower rate must publish, s."""
+_PERIODS = 1.5
+"""Periods of a topic's stated rate in which it must publish."""
 
 
 def controllers_of(world: World) -> ControllerFiles:
@@ -21,6 +26,11 @@ def controllers_of(world: World) -> ControllerFiles:
 def idle(world: World) -> set[str]:
     """Nodes of controllers that do not run: two controllers of one joint are used alternately."""
     return {each.node for each in controllers_of(world).loaded if not each.running}
+
+
+def _periods(topics: Iterable[Publisher]) -> float:
+    """Time in which topics must publish by their stated rates, s."""
+    return max((_PERIODS / each.rate for each in topics if each.rate), default=0.0)
 
 
 def listened(world: World) -> tuple[int, tuple[str, ...]]:
@@ -42,8 +52,15 @@ def listened(world: World) -> tuple[int, tuple[str, ...]]:
     for topic in rated:
         subscriptions[topic] = graph.subscribe(topic, partial(hear, topic))
     slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)
+    waited = min(_LONGEST, max(LISTENING, 3.0 / slowest))
     if rated:
-        world.run(min(_LONGEST, max(LISTENING, 3.0 / slowest)))
+        world.run(waited)
+    late = _periods(rated[each] for each in silent)
+    if late > waited:
+        more = min(_PATIENCE, late) - waited
+        world.run(more)
+        waited += more
+    silent = {each for each in silent if _periods([rated[each]]) <= waited}
     for subscription in subscriptions.values():
         subscription.close()
     return len(rated), tuple(sorted(silent))
