@@ -13,7 +13,7 @@ from cartwheel.description.model import PluginTag
 from cartwheel.dialects.catalogue import all_plugins, plugin_named, plugin_names, short_name
 from cartwheel.dialects.tag_roles import WHEEL_ROLES, Role, TagRole
 from cartwheel.dialects.tags import default_joints as default_joints_of
-from cartwheel.dialects.tags import read, roles_of, tags_of
+from cartwheel.dialects.tags import read, roles_of, spellings_of, tags_of
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
 from cartwheel.errors import Diagnostic, PluginError
 
@@ -61,6 +61,13 @@ def is_read(filename: str, tag: str) -> bool:
     """Whether a plugin that Cartwheel simulates reads a tag."""
     plugin = plugin_named(filename)
     return plugin is not None and tag in tags_of(plugin.parameters)
+
+
+@cache
+def spellings(filename: str, tag: str) -> tuple[str, ...]:
+    """All tags that set the same parameter of a plugin as a tag does."""
+    plugin = plugin_named(filename)
+    return () if plugin is None else spellings_of(plugin.parameters, tag)
 
 
 @cache

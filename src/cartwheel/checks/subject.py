@@ -120,7 +120,11 @@ class Subject:
         """Whether an included model is missing, so that its contents are unknown."""
         diagnostics = () if self.read is None else self.read.diagnostics
         return any(
-            each.code in ABSENT and each.values.get("kind") == "model" for each in diagnostics
+            each.code in ABSENT
+            and each.values.get("kind") == "model"
+            # The meshes of a model are in its folder, but contain no joints.
+            and each.values.get("left_out") not in ("visual", "collision")
+            for each in diagnostics
         )
 
     @property

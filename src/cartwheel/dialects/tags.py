@@ -84,6 +84,12 @@ def tags_of(cls: type) -> set[str]:
     return {name for item in dataclasses.fields(cls) for name in item.metadata["tags"]}
 
 
+def spellings_of(cls: type, tag: str) -> tuple[str, ...]:
+    """Returns all tags of the parameter that a tag of a dataclass sets; empty for another tag."""
+    tags = (item.metadata["tags"] for item in dataclasses.fields(cls))
+    return next((tuple(names) for names in tags if tag in names), ())
+
+
 def roles_of(cls: type) -> tuple[TagRole, ...]:
     """Returns the tags of a parameter dataclass that have a role."""
     fields = {item.name: item for item in dataclasses.fields(cls)}

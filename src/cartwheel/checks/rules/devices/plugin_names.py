@@ -9,8 +9,11 @@ from cartwheel.checks import edits, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.model import WorldDescription
+from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.ros_only import other_ros, other_tags, unread_tags
 from cartwheel.dialects.substitutes import substitute
+from cartwheel.dialects.world_plugins import misplaced
 from cartwheel.errors import Diagnostic
 from cartwheel.similar_names import meant_one
 
@@ -50,6 +53,21 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 place="attribute" if near else "",
                 mark=tag.filename,
             )
+
+
+@rule(devices_codes.PLUGIN_MISPLACED)
+def plugin_misplaced(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for tag, sensor in robot.plugins():
+            plugin = plugin_named(tag.filename)
+            if plugin is not None and plugin.for_world:
+                yield misplaced(tag, "world")
+            elif plugin is not None and plugin.for_sensor and sensor is None:
+                yield misplaced(tag, "sensor")
+    for tag in subject.read.plugins if isinstance(subject.read, WorldDescription) else ():
+        plugin = plugin_named(tag.filename)
+        if plugin is not None and not (plugin.for_world or plugin.also_in_world):
+            yield misplaced(tag, "model")
 
 
 @rule(devices_codes.PLUGIN_OF_OTHER_ROS)

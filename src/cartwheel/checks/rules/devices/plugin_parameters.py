@@ -45,8 +45,9 @@ def joint_missing(subject: Subject) -> Iterator[Diagnostic]:
 def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
     """A diagnostic about a plugin's parameters, with the corrected tag if it is misspelt."""
     near = str(diagnostic.values.get("meant") or "")
-    # A tag that already exists is not the intended one.
-    written = bool(near) and tag.element.find(near) is not None
+    # A tag that already exists, also in another spelling, is not the intended one.
+    spelled = plugin_tags.spellings(tag.filename, near) or (near,)
+    written = bool(near) and any(tag.element.find(each) is not None for each in spelled)
     if written:
         near = ""
     element = next((e for e in tag.element.walk() if e.origin is diagnostic.origin), None)

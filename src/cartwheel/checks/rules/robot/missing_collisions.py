@@ -53,7 +53,11 @@ def base_no_collision(subject: Subject) -> Iterator[Diagnostic]:
             links = [robot.links[name] for name in group]
             if root in robot.inbound or any(link.collisions for link in links):
                 continue
-            seen = next((link for link in links if link.visuals), None)
+            seen = max(
+                (link for link in links if link.visuals),
+                key=lambda link: max((e.extent for e in robot.visuals[link.name]), default=0.0),
+                default=None,
+            )
             if nowhere and root != "world":
                 # Even if it looks like nothing, such as a sensor that other models include.
                 seen = seen or links[0]
