@@ -21,7 +21,7 @@ _SET: Mapping[int, Mapping[str, str]] = {
     2: {"ROS_VERSION": "2", "ROS_DISTRO": "humble", "ROS_PYTHON_VERSION": "3"},
 }
 """By the version of ROS. Of both, the last distribution with Gazebo Classic."""
-_NAMES = frozenset(name for names in _SET.values() for name in names)
+ROS_VARIABLES = frozenset(name for names in _SET.values() for name in names)
 _ROS2 = (".launch.py", ".launch.xml", ".launch.yaml", "_launch.py", "_launch.xml")
 _MOST = 500
 """Maximum number of launch files to look at."""
@@ -50,7 +50,7 @@ class RosEnvironment(Mapping[str, str]):
         self._report = report
 
     def __getitem__(self, name: str) -> str:
-        if name in self._variables or name not in _NAMES:
+        if name in self._variables or name not in ROS_VARIABLES:
             return self._variables[name]
         version = self._known() or 2
         value = _SET[version].get(name)
@@ -60,7 +60,7 @@ class RosEnvironment(Mapping[str, str]):
         return value
 
     def __contains__(self, name: object) -> bool:
-        if name in self._variables or name not in _NAMES:
+        if name in self._variables or name not in ROS_VARIABLES:
             return name in self._variables
         return name in _SET.get(self._known() or 0, {})
 
@@ -90,6 +90,8 @@ def assumed(name: str, value: str, version: int, origin: Origin) -> Diagnostic:
 
 def _launched_by(file: Path) -> Literal[1, 2] | None:
     """The version of ROS of a launch file, or of all launch files in the package of a file."""
+    if file.suffix == ".py":
+        return 2
     files = [file]
     if ".launch" not in file.name and not file.name.endswith(_ROS2):
         package = package_above(file.parent)

@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.effort import LONGEST
+from cartwheel.description.launches.environment import is_environ, is_variable, ros_variable
 from cartwheel.description.launches.python_actions import (
     Later,
     called_functions,
@@ -327,6 +328,8 @@ class _Reader:
             return NOTHING
         if isinstance(node, ast.Subscript):
             held, key = self.value(node.value), self.value(node.slice)
+            if is_environ(node.value):
+                return ros_variable(key, self._path, node.lineno, self._facts) or NOTHING
             if isinstance(held, list) and isinstance(key, int) and 0 <= key < len(held):
                 return used(held[key])
             known = isinstance(held, dict) and isinstance(key, str | int)
@@ -425,6 +428,9 @@ class _Reader:
         if name in CONDITIONS:
             return holds(name, [*places, *words.values()])
         first = places[0] if places else next((words[w] for w in FIRST if w in words), NOTHING)
+        if is_variable(node, name):
+            stated = words.get("name", first)
+            return ros_variable(stated, self._path, node.lineno, self._facts) or NOTHING
         if name in JOINS:
             parts = [*([] if isinstance(holder, Unknown) else [holder]), *places]
             return path_of(parts)

@@ -132,6 +132,7 @@ def read_launch(
             *_undecided(file, facts, models, read),
             *itertools.chain(*(not_expanded(each.use) for each in models)),
             *_not_spawned(file, lost, facts),
+            *facts.assumed.values(),
         ),
     )
 

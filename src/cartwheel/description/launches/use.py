@@ -35,7 +35,7 @@ from cartwheel.description.launches.spawning import (
     world_in,
 )
 from cartwheel.description.launches.variants import SUFFIXES, beside
-from cartwheel.errors import CartwheelError, Origin
+from cartwheel.errors import CartwheelError, Diagnostic, Origin
 
 ABSENT = -1
 """The number of a description that was not found."""
@@ -122,6 +122,8 @@ class Facts:
     """The expressions ``a if condition else b`` with an unknown condition, with the lines of a."""
     reversed: Collection[Place] = ()
     """Those of which b is used instead of a."""
+    assumed: dict[str, Diagnostic] = field(default_factory=dict)
+    """Notes about the environment variables of ROS that are not set."""
     defaults: dict[str, str] = field(default_factory=dict)
     """The arguments of the launch file itself that have their default, such as the robot's type."""
 

@@ -13,6 +13,7 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.expressions import Function
 from cartwheel.description.launches.bridging import BRIDGES
 from cartwheel.description.launches.effort import UNKNOWN, limited
+from cartwheel.description.launches.environment import ros_variable
 from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.launch_use import Unfound
 from cartwheel.description.launches.spawning import resolved, split
@@ -44,6 +45,8 @@ class _Reader:
         self._facts = facts
         self._depth = depth
         self._inside_node = False
+        self._line = 0
+        """The line of the attribute that is being evaluated."""
 
     def group(self, node: Node) -> None:
         """Reads the elements of a launch file or of a ``<group>``."""
@@ -172,6 +175,7 @@ class _Reader:
 
     def _value(self, node: Node, name: str) -> str:
         text = limited(node.attributes.get(name, ""))
+        self._line = node.origin.line
         self._facts.effort.spend(1 + len(text))
         # As in roslaunch, the parentheses of an expression end at the end of the attribute.
         expression = _EVAL.fullmatch(text)
@@ -197,6 +201,9 @@ class _Reader:
             return self._facts.package(first)
         if kind in ("env", "optenv"):
             # Without a default, a variable that is not set is empty.
+            ros = self._ros(first)
+            if ros is not None:
+                return ros
             absent = "" if kind == "optenv" else UNKNOWN
             return os.environ.get(first, words[1] if len(words) > 1 else absent)
         if kind == "dirname":
@@ -213,8 +220,8 @@ class _Reader:
         functions: Mapping[str, Callable[..., Any]] = {
             "arg": self._known,
             "find": lambda name: _certain(self._facts.package(name)),
-            "env": lambda name: os.environ[name],
-            "optenv": lambda name, default="": os.environ.get(name, default),
+            "env": lambda name: self._ros(name) or os.environ[name],
+            "optenv": lambda name, default="": self._ros(name) or os.environ.get(name, default),
             "dirname": lambda: str(self._path.parent),
         }
         self._facts.effort.spend(len(self._arguments))
@@ -225,6 +232,10 @@ class _Reader:
         for name, plain in functions.items():
             names[name] = Function(name, lambda _, *args, plain=plain: plain(*args))
         return evaluated(text, names, self._facts.effort)
+
+    def _ros(self, name: Any) -> str | None:
+        """The value of an environment variable that ROS sets; None for any other one."""
+        return ros_variable(name, self._path, self._line, self._facts)
 
     def _known(self, name: str) -> Any:
         return _converted(_certain(self._arguments.get(name, UNKNOWN)))
