@@ -14,6 +14,7 @@ from cartwheel.codes.robot import UNBALANCED
 from cartwheel.description import load_text
 from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import RobotDescription
+from cartwheel.geometry import rotate
 
 RULE = "wheels-off-ground"
 RADIUS, BALL = 0.05, 0.02
@@ -400,3 +401,27 @@ def test_wheels_off_the_ground_depend_on_collisions_only(bench, kind):
     for text, rule in ((cart(0.0023), RULE), (scraping, "body-on-ground")):
         found = bench.find(text.replace("</link>", f"{lost}</link>", 1), rule)
         assert len(found) == (kind == "visual" or rule == RULE), rule
+
+
+@pytest.mark.parametrize(("height", "falls"), [(0.5, True), (0.01, False)])
+def test_a_tall_robot_on_a_small_oblique_foot_falls_over(tmp_path, height, falls):
+    """A lower one comes to rest on the bottom of its foot."""
+    path = tmp_path / "pole.urdf"
+    path.write_text(
+        f'<robot name="pole"><link name="pole"><inertial><origin xyz="0 0 {height}"/>'
+        '<mass value="1"/>'
+        '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial><collision>'
+        '<origin rpy="0.15 0.15 0"/><geometry><box size="0.04 0.04 0.02"/></geometry></collision>'
+        f'<collision><origin xyz="0 0 {height}"/><geometry><sphere radius="0.005"/></geometry>'
+        "</collision></link></robot>"
+    )
+    (finding,) = [f for f in cartwheel.check(path).findings if f.code is UNBALANCED]
+    assert finding.values.get("falls", False) == falls
+    with cartwheel.World("empty") as world:
+        pole = world.spawn(path, z=0.02)
+        world.run(3.0)
+        tilt = np.arccos(rotate(pole.pose.orientation, (0, 0, 1))[2])
+        if falls:
+            assert tilt > np.pi / 4
+        else:
+            assert tilt == pytest.approx(finding.values["tilt"], abs=0.02)

@@ -39,6 +39,10 @@ _HIGH = 0.75
 """Height of links that do not touch the ground, relative to that of the robot."""
 _TILTED = 0.1
 """Smallest angle of a robot that is reported to be tilted, rad."""
+_FLAT = 0.005
+"""Largest height of a point on which the robot rests, relative to its size."""
+_KEPT = 0.5
+"""Part of the energy of the fall that remains when a part touches the ground."""
 _FALLEN = math.radians(30.0)
 """Smallest angle at which a robot is said to have fallen over."""
 _CASTER = re.compile(r"cast[eo]r|ball", re.IGNORECASE)
@@ -73,7 +77,7 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
         outside = _outside(points, center, robot.size)
         if rest is not None:
             # On wheels alone, this is where the robot would balance, not where it comes to rest.
-            yield from _on_an_axle(robot, center, rest) or _tilted(robot, rest)
+            yield from _on_an_axle(robot, center, rest) or _tilted(robot, center, points, rest)
         elif outside > _MARGIN * robot.size:
             yield robot_codes.UNBALANCED.diagnostic(
                 message=f"the centre of mass is {1000 * outside:.3g} mm outside the area between "
@@ -102,10 +106,27 @@ def _lacks_support(robot: Robot) -> bool:
     return any(robot.links[name].pose.position[2] < high for name in robot.uncovered)
 
 
-def _tilted(robot: Robot, rest: Rest) -> Iterator[Diagnostic]:
-    """A robot that rests far from level."""
+def _tilted(robot: Robot, center: Floats, points: Floats, rest: Rest) -> Iterator[Diagnostic]:
+    """A robot that rests far from level, or falls over before.
+
+    Args:
+        robot: The robot.
+        center: Its centre of mass in the model frame, m, shape (3,).
+        points: The corners of its collisions, m, shape (n, 3).
+        rest: Where it rests.
+    """
     tilt = math.acos(min(1.0, float(rest.normal[2])))
-    if tilt > _TILTED:
+    if tilt <= _TILTED:
+        return
+    if _topples(center, points, rest, robot.size):
+        yield robot_codes.UNBALANCED.diagnostic(
+            message="the area on which the robot stands is so small that it falls over, unless a "
+            "program balances it",
+            values={"outside": 0.0, "falls": True},
+            origin=robot.description.origin,
+            hint="Start the program that balances the robot.",
+        )
+    else:
         yield robot_codes.UNBALANCED.diagnostic(
             message="the points on which the robot rests have different heights, so it tilts by "
             f"{math.degrees(tilt):.2g}°",
@@ -113,6 +134,23 @@ def _tilted(robot: Robot, rest: Rest) -> Iterator[Diagnostic]:
             origin=robot.description.origin,
             hint="Check whether all wheels and casters touch the ground at the same height.",
         )
+
+
+def _topples(center: Floats, points: Floats, rest: Rest, size: float) -> bool:
+    """Whether a robot that tilts until it rests has enough energy to tip over the edge there."""
+    first = np.cross(rest.normal, (1.0, 0.0, 0.0) if abs(rest.normal[0]) < 0.5 else (0.0, 1.0, 0.0))
+    first /= np.linalg.norm(first)
+    angles = np.linspace(0.0, 2 * np.pi, _DIRECTIONS, endpoint=False)
+    directions = np.outer(first, np.cos(angles)) + np.outer(
+        np.cross(rest.normal, first), np.sin(angles)
+    )
+    near = points[points @ rest.normal - rest.offset < _FLAT * size]
+    if not len(near):
+        return False
+    margin = max(0.0, float(((near - center) @ directions).max(axis=0).min()))
+    height = float(rest.normal @ center - rest.offset)
+    released = float(center[2] - points[:, 2].min()) - height
+    return math.hypot(height, margin) - height < _KEPT * released
 
 
 def _on_an_axle(robot: Robot, center: Floats, rest: Rest | None) -> list[Diagnostic]:
