@@ -125,6 +125,29 @@ def test_a_gain_that_does_not_hold_a_load_up_is_reported(tmp_path, pose, p, repo
     assert codes == [CONTROLLER_GAIN_TOO_LOW] * reported
 
 
+@pytest.mark.parametrize(("p", "reported"), [(1.0, True), (5.0, False)])
+@pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
+def test_a_gain_that_hardly_lifts_what_hangs_is_reported(tmp_path, p, reported, gz):
+    """Gravity pulls 2 kg at 0.5 m back with 9.8 N m/rad: the joint moves to p / (p + 9.8)."""
+    arm = beam("beam", "world").replace(
+        '<origin xyz="0 0 1"/>', '<origin xyz="0 0 1" rpy="0 1.5708 0"/>', 1
+    )
+    arm = arm.replace("</joint>", '<dynamics damping="2"/></joint>', 1)
+    path = tmp_path / "arm.urdf"
+    plugin = GZ.format(p=p, i=0.0) if gz else ROS1
+    path.write_text(robot(arm + transmission("beam_joint", "Effort"), plugin))
+    (tmp_path / "move.yaml").write_text(FILE.format(p=p, i=0.0))
+    files = () if gz else (tmp_path / "move.yaml",)
+    findings = check(path, controller_files=files).findings
+    found = [each for each in findings if each.code is CONTROLLER_GAIN_TOO_LOW]
+    assert [each.values["joint"] for each in found] == ["beam_joint"] * reported
+    assert not found or found[0].values["hanging"] == pytest.approx(9.8)
+    verdict = try_robot(path, standing=1.0, controllers=files)
+    (reach,) = verdict.reaches
+    assert reach.reached / reach.target == pytest.approx(p / (p + 9.8), abs=0.01)
+    assert [each.code for each in verdict.faults] == [CONTROLLER_GAIN_TOO_LOW] * reported
+
+
 def upright(dynamics: str = '<dynamics damping="2"/>') -> str:
     """A weight of 2 kg 0.5 m above its joint: 9.8 N m/rad."""
     arm = beam("beam", "world").replace(

@@ -24,6 +24,10 @@ _GRAVITY = 9.8
 """m/s²."""
 _UPRIGHT = math.pi / 3
 """Angle from the upright position within which a joint starts that has to hold its load up, rad."""
+_HANGING = math.pi / 6
+"""Angle from where a load hangs within which gravity acts like a spring, rad."""
+_LIFTS = 0.2
+"""Smallest part of its target to which a joint has to move."""
 SLOW = 5.0
 """Time after which an integral counts as too slow, s."""
 
@@ -56,6 +60,8 @@ def gain_too_low(
     if integral * SLOW < gain:
         yield from _is_stuck(joint, gain, origin, **place)
         yield from _cannot_hold(robot, joint, gain, origin, **place)
+        if not of_velocity:
+            yield from _hangs(robot, joint, gain, origin, **place)
     if not of_velocity:
         yield from _falls_over(robot, joint, gain, origin, **place)
 
@@ -76,16 +82,10 @@ def upright_stiffness(robot: Robot, joint: Joint) -> float:
         0 if the joint does not turn, if it starts further than 60° from the upright position, if
         its limits exclude this position, or if its friction or its spring holds the load.
     """
-    turns = joint.type in ("revolute", "continuous")
-    if not turns or joint.child not in robot.placed or joint.mimic is not None:
+    found = _pendulum(robot, joint)
+    if found is None:
         return 0.0
-    load = _loads(robot).get(joint.child)
-    if load is None or load.mass <= 0.0:
-        return 0.0
-    axis = wheel_axis(robot, joint)
-    arm = load.moment / load.mass - np.array(wheel_place(robot, joint).position)
-    arm, up = (each - (each @ axis) * axis for each in (arm, np.array([0.0, 0.0, 1.0])))
-    left = math.atan2(float(axis @ np.cross(arm, up)), float(arm @ up))
+    left, stiffness = found
     lower, upper = joint.axis.lower, joint.axis.upper
     limited = joint.type == "revolute" and lower is not None and upper is not None
     if limited and lower is not None and upper is not None:
@@ -94,10 +94,26 @@ def upright_stiffness(robot: Robot, joint: Joint) -> float:
             return 0.0
     if abs(left) > _UPRIGHT:
         return 0.0
-    stiffness = float(_GRAVITY * load.mass * np.linalg.norm(arm) * np.linalg.norm(up))
     if joint.axis.friction >= stiffness:
         return 0.0
     return max(0.0, stiffness - joint.axis.spring_stiffness)
+
+
+def _pendulum(robot: Robot, joint: Joint) -> tuple[float, float] | None:
+    """The way of a joint that turns to the upright position of its load, rad, and the maximum
+    torque of gravity, N m. None without a load.
+    """
+    turns = joint.type in ("revolute", "continuous")
+    if not turns or joint.child not in robot.placed or joint.mimic is not None:
+        return None
+    load = _loads(robot).get(joint.child)
+    if load is None or load.mass <= 0.0:
+        return None
+    axis = wheel_axis(robot, joint)
+    arm = load.moment / load.mass - np.array(wheel_place(robot, joint).position)
+    arm, up = (each - (each @ axis) * axis for each in (arm, np.array([0.0, 0.0, 1.0])))
+    left = math.atan2(float(axis @ np.cross(arm, up)), float(arm @ up))
+    return left, float(_GRAVITY * load.mass * np.linalg.norm(arm) * np.linalg.norm(up))
 
 
 def span(joint: Joint) -> float | None:
@@ -169,6 +185,32 @@ def _falls_over(
     )
 
 
+def _hangs(
+    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
+) -> Iterator[Diagnostic]:
+    """The finding that a gain hardly lifts what hangs from a joint.
+
+    At a small angle a from where the load hangs, gravity pulls back with C a, so that the joint
+    moves to p / (p + C) of its target.
+    """
+    found = _pendulum(robot, joint)
+    if found is None or gain <= 0.0 or joint.axis.spring_stiffness:
+        return
+    left, stiffness = found
+    part = gain / (gain + stiffness)
+    if math.pi - abs(left) > _HANGING or part >= _LIFTS:
+        return
+    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
+        f"the proportional gain of {gain:g} N m/rad hardly lifts what hangs from joint "
+        f'"{joint.name}": gravity pulls it back with {stiffness:.3g} N m per rad, so it moves to '
+        f"{100 * part:.2g} % of its target",
+        values={"joint": joint.name, "gain": gain, "hanging": stiffness},
+        origin=origin,
+        hint=f"Use a gain well above {stiffness:.3g} N m/rad, or an integral gain.",
+        **place,
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class _Load:
     """What a joint carries, as far as gravity acts on it."""
@@ -185,7 +227,7 @@ def _loads(robot: Robot) -> Mapping[str, _Load]:
 
     One pass, because a robot may be a long chain. Links in loops of joints are left out.
     """
-    poses = starting_poses(robot)
+    poses = starting_poses(robot, commanded=False)
     children: dict[str, list[str]] = {}
     for child, holder in robot.inbound.items():
         children.setdefault(holder.parent, []).append(child)

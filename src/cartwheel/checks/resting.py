@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.description.kinematics import center_of_mass, link_poses
 from cartwheel.description.model import Capsule, Cylinder, Ellipsoid, Shape, Sphere
@@ -36,19 +37,46 @@ class Rest:
         return None if point is None else float(self.normal @ point - self.offset)
 
 
-def starting_poses(robot: Robot) -> Mapping[str, Pose]:
-    """Poses of the links with each joint at 0, or at its nearest limit, by name."""
-    positions = {
-        joint.name: min(max(0.0, joint.axis.lower), joint.axis.upper)
+def starting_positions(robot: Robot, *, commanded: bool = True) -> dict[str, float]:
+    """Positions of the joints that do not start at 0, by name, rad or m.
+
+    A joint starts at the initial value of its ros2_control interface, if it is `commanded`, or at
+    0, or else at its limit that is nearest to this position.
+    """
+    initial = _initial_positions(robot) if commanded else {}
+    return initial | {
+        joint.name: min(max(initial.get(joint.name, 0.0), joint.axis.lower), joint.axis.upper)
         for joint in robot.description.joints
         if joint.type in ("revolute", "prismatic")
         and joint.axis.lower is not None
         and joint.axis.upper is not None
-        and not joint.axis.lower <= 0.0 <= joint.axis.upper
+        and not joint.axis.lower <= initial.get(joint.name, 0.0) <= joint.axis.upper
     }
-    if not positions:
+
+
+def starting_poses(robot: Robot, *, commanded: bool = True) -> Mapping[str, Pose]:
+    """Poses of the links with each joint where it starts, by name; see `starting_positions`."""
+    positions = starting_positions(robot, commanded=commanded)
+    if not any(positions.values()):
         return {link.name: link.pose for link in robot.description.links}
     return link_poses(robot.description, positions)
+
+
+def _initial_positions(robot: Robot) -> dict[str, float]:
+    """The initial positions in the interfaces of simulated ros2_control, by joint, rad or m."""
+    if not any("ros2_control" in tag.filename for tag in robot.description.plugins):
+        return {}
+    return {
+        name: value
+        for control in robot.description.ros2_control
+        for joint in control.find_all("joint")
+        if (name := (joint.attribute("name") or "").strip()) in robot.joints
+        for state in joint.find_all("state_interface")
+        if state.attribute("name") == "position"
+        for param in state.find_all("param")
+        if param.attribute("name") == "initial_value"
+        if (value := nodes.number(param.text)) is not None
+    }
 
 
 class Surfaces:

@@ -7,7 +7,7 @@ from collections.abc import Sequence, Set
 
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import wheel_axis, wheel_links
-from cartwheel.codes import files, robot
+from cartwheel.codes import devices, files, robot
 from cartwheel.corpus.faults import coded, most_severe
 from cartwheel.corpus.verdict import Stand
 from cartwheel.description.model import Joint, RobotDescription
@@ -100,7 +100,14 @@ def cause_of_fall(
     if any(_tips_rigid(each, stand) for each in reasons):
         # Even if its joints were held.
         reasons = [each for each in reasons if each.code is not robot.JOINTS_UNDRIVEN]
-    return most_severe(reasons) or idle or _pushed(found, description)
+    return most_severe(reasons) or idle or _pushed(found, description) or _badly_held(found, stand)
+
+
+def _badly_held(found: Sequence[Diagnostic], stand: Stand) -> Diagnostic | None:
+    """Why controllers do not hold a robot still or up: their gains, or their joints' limits."""
+    if stand.state == "moves":
+        return coded(found, frozenset({devices.DERIVATIVE_GAIN_TOO_HIGH}))
+    return next((each for each in found if "sagged" in each.values), None)
 
 
 def _tips_rigid(each: Diagnostic, stand: Stand) -> bool:

@@ -7,14 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from cartwheel.api import Model, World
+from cartwheel.checks.resting import starting_positions
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import ROUND, wheel_axis, wheel_joints, wheel_links, wheel_widths
+from cartwheel.codes import devices
 from cartwheel.codes import robot as robot_codes
 from cartwheel.corpus.loads import held_by
+from cartwheel.corpus.motion import commanded_speeds
 from cartwheel.corpus.verdict import Drive
 from cartwheel.description.model import Joint
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, Origin
 
 _CARRIES = 0.1
 """Smallest part of the weight that is reported."""
@@ -24,6 +27,10 @@ _SLIPPERY = 0.3
 """Largest friction coefficient of a part that is meant to slide."""
 _SLID, _TURNED = 0.02, 0.2
 """Motion of a joint that gave way, m and rad."""
+_GIVEN, _SLIPPED = 0.05, 0.005
+"""Minimum motion of a controlled joint that lets a robot down, rad and m."""
+_ALL = 0.95
+"""Part of the effort limit that a motor uses which cannot hold its joint."""
 _LEVEL = 0.9
 """Largest vertical component of the axis of a joint that lifts."""
 _GRAVITY = 9.8
@@ -159,6 +166,57 @@ def gave_way(
             origin=robot.joints[most].origin,
             hint=f'Command "{waiting[most]}" and the others at the start.' if wait else "",
         )
+
+
+def sagging(
+    model: Model,
+    robot: Robot,
+    started: Sequence[Controller],
+    gains: Mapping[str, float],
+) -> Iterator[Diagnostic]:
+    """The joint that the weight has moved furthest from where its controller should hold it.
+
+    Args:
+        model: The robot in the world, after it should have stood.
+        robot: Its description.
+        started: The controllers that run.
+        gains: The gains that `weak_gains` returns.
+    """
+    held = {name: each for each in started if each.holds for name in each.interfaces}
+    speeds = commanded_speeds(started)
+    starts = starting_positions(robot)
+    moved = {
+        name: way
+        for name in held
+        if (joint := robot.joints.get(name)) is not None
+        and name not in speeds
+        and joint.mimic is None
+        and (way := abs(model.joint(name) - starts.get(name, 0.0)))
+        > (_SLIPPED if joint.type == "prismatic" else _GIVEN)
+    }
+    for name in sorted(moved, key=lambda each: -moved[each]):
+        joint = robot.joints[name]
+        unit, effort = ("m", "N") if joint.type == "prismatic" else ("rad", "N m")
+        limit = joint.axis.effort
+        if limit and abs(model.joints.efforts[name]) >= _ALL * limit:
+            yield devices.EFFORT_LIMIT_TOO_LOW.diagnostic(
+                f'the effort limit of joint "{name}", {limit:g} {effort}, does not hold the weight '
+                f"on it: it moved by {moved[name]:.2g} {unit}",
+                values={"joint": name, "stated": limit, "sagged": moved[name]},
+                origin=joint.origin,
+                hint="Use the effort limit of the motor.",
+            )
+            return
+        if name in gains:
+            source = held[name].settings.source
+            yield devices.CONTROLLER_GAIN_TOO_LOW.diagnostic(
+                f"with the proportional gain of {gains[name]:g} {effort}/{unit}, joint "
+                f'"{name}" gives way to the weight on it: it moved by {moved[name]:.2g} {unit}',
+                values={"joint": name, "gain": gains[name], "sagged": moved[name]},
+                origin=Origin(file=source) if source else joint.origin,
+                hint="Use a higher proportional gain, or an integral gain.",
+            )
+            return
 
 
 def blocked(world: World, model: Model, robot: Robot) -> set[str]:

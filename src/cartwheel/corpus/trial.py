@@ -22,7 +22,14 @@ from cartwheel.corpus.listening import LISTENING, controllers_of, idle, listened
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.placing import HIGH, name_in, put, surroundings
 from cartwheel.corpus.poses import posed
-from cartwheel.corpus.resting import blocked, dragging, driven, drives_apart, gave_way
+from cartwheel.corpus.resting import (
+    blocked,
+    dragging,
+    driven,
+    drives_apart,
+    gave_way,
+    sagging,
+)
 from cartwheel.corpus.rivals import hindered
 from cartwheel.corpus.verdict import Drive, Verdict
 from cartwheel.corpus.worlds import load_from_world
@@ -250,6 +257,8 @@ def _moved(
     if not stood.fixed:
         moving = stood.state == "moves"
         given_up += gave_way(world, model, body, before, started, moving=moving)
+    if stood.state in ("tips", "sinks"):
+        given_up += sagging(model, body, started, weak_gains(robot, started))
     verdict = replace(
         verdict,
         stand=stood,
