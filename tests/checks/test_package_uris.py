@@ -28,7 +28,15 @@ def found(folder, uri, plugin=""):
 
 
 @pytest.mark.parametrize(
-    ("plugin", "severity"), [(CLASSIC, "warning"), ("", "info"), (GZ, None), (CLASSIC + GZ, None)]
+    ("plugin", "severity"),
+    [
+        (CLASSIC, "warning"),
+        ("", "info"),
+        (GZ, None),
+        (CLASSIC + GZ, None),
+        ('<plugin name="p" filename="libign_ros2_control-system.so"/>', None),
+        ('<plugin name="p" filename="libdesign_ros.so"/>', "info"),
+    ],
 )
 def test_a_package_uri_in_sdf_is_reported_once_for_gazebo_classic(tmp_path, plugin, severity):
     reported = found(tmp_path, "package://robot/meshes/leg.stl", plugin)

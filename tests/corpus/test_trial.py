@@ -1800,6 +1800,21 @@ def test_whether_a_launch_file_shows_a_robot_in_rviz_does_not_decide_whether_it_
     assert verdict.good is (not for_gazebo and not started), verdict.faults
 
 
+@pytest.mark.parametrize("end", ["", "<!DOCTYPE robot>", "<!DOCTYPE robot [<!ELEMENT robot ANY>]>"])
+def test_comments_before_a_robot_do_not_decide_whether_it_must_stand(tmp_path, end):
+    """Trying all ways to separate so many comments would not end."""
+    head = '<?xml version="1.0"?>' + "<!-- a --><!-- b -->\n" * 100 + end
+    (tmp_path / "arm.urdf").write_text(
+        f'{head}<robot name="arm">{BOX.format(name="base", at="0 0 0", size="0.1 0.1 0.1")}'
+        f"{BOX.format(name='upper', at='1 0 0', size='0.1 0.1 0.1')}"
+        '<joint name="shoulder" type="fixed"><parent link="base"/><child link="upper"/>'
+        '<origin xyz="0 0 0.2"/></joint></robot>'
+    )
+    verdict = try_robot(tmp_path / "arm.urdf", standing=1.0)
+    assert not verdict.stands
+    assert verdict.good, verdict.faults
+
+
 @pytest.mark.parametrize("simulated", [True, False])
 def test_a_description_of_visuals_for_rviz_needs_no_mass(tmp_path, simulated):
     spawner = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-urdf -model c"/>'

@@ -170,9 +170,9 @@ def _calls_macro(subject: Subject, node: Node, diagnostic: Diagnostic) -> bool:
 def _fits(subject: Subject, node: Node, meant: str) -> bool:
     """Whether an element with another tag would be valid in the place of an unknown one."""
     holder = subject.holder_of(node)
-    others = [each for each in nodes.walk(subject.root) if each.tag == meant]
-    if meant in _SINGLE and any(each in others for each in (holder.children if holder else ())):
+    if meant in _SINGLE and holder is not None and nodes.child(holder, meant) is not None:
         return False
+    others = (each for each in nodes.walk(subject.root) if each.tag == meant)
     known = set(_ATTRIBUTES.get(meant, ())).union(*(each.attributes for each in others))
     return not known or known.issuperset(node.attributes)
 

@@ -30,8 +30,12 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Diagnostic
 
-_ROOT = re.compile(r"(?:\s|<!--.*?-->|<\?.*?\?>)*<([\w:]+)", re.DOTALL)
-"""The first element of an XML text."""
+_ROOT = re.compile(
+    r"(?>\s+|<!--.*?-->|<\?.*?\?>|<!DOCTYPE(?:[^<>\[]|\[[^\]]*\])*+>)*+<([\w:]+)", re.DOTALL
+)
+"""The first element of an XML text. Possessive: otherwise there would be two ways to separate
+consecutive comments.
+"""
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})

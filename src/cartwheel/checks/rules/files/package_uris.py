@@ -13,7 +13,7 @@ from cartwheel.codes import files as files_codes
 from cartwheel.errors import DescriptionError, Diagnostic
 
 _SCHEME = "package://"
-_GZ = re.compile(r"(?:gz|ignition)[-_](?:sim|gazebo|ros)", re.IGNORECASE)
+_GZ = re.compile(r"(?<![a-z])(?:lib)?(?:gz|ign(?:ition)?)[-_](?:sim|gazebo|ros)", re.IGNORECASE)
 """Names of plugins of newer versions of Gazebo, which accept any scheme."""
 _CLASSIC = re.compile(r"libgazebo_")
 _MODEL = ("model.config", "model.sdf")
