@@ -81,3 +81,15 @@ def test_wheels_of_a_rocker_that_roll_freely_do_not_brake(tmp_path):
     (driven,) = verdict.drives
     assert not driven.passes
     assert BODY_ON_GROUND not in {each.code for each in verdict.observed}
+
+
+def test_the_place_in_a_controller_file_is_relative_like_that_in_the_robot(tmp_path, monkeypatch):
+    (tmp_path / "config").mkdir()
+    (tmp_path / "package.xml").write_text("<package><name>rover</name></package>")
+    kind = "position_controllers/JointPositionControler"
+    (tmp_path / "config" / "c.yaml").write_text(f"arm: {{type: {kind}, joint: arm_joint}}\n")
+    written(tmp_path, rover(manager=MANAGER))
+    monkeypatch.chdir(tmp_path)
+    files = {each.origin.file for each in cartwheel.check("robot.urdf").findings if each.origin}
+    assert "config/c.yaml" in files
+    assert not [file for file in files if file.startswith("/")]

@@ -35,3 +35,16 @@ def test_a_tiny_inertia_of_a_link_without_weight_is_a_note(severities, base, sev
 
 def test_an_impossible_inertia_that_hardly_counts_is_a_note(severities):
     assert severities("inertia-impossible", 10.0, IMPOSSIBLE) == ["info"]
+
+
+@pytest.mark.parametrize(("radius", "reported"), [(1e-6, False), (0.01, True)])
+def test_a_link_that_only_marks_a_place_has_no_inertia_of_its_shape(tmp_path, radius, reported):
+    """Gazebo needs a larger one than that of such a body."""
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        '<robot name="robot"><link name="base"><inertial><mass value="1e-5"/>'
+        '<inertia ixx="1e-6" iyy="1e-6" izz="1e-6"/></inertial><collision><geometry>'
+        f'<sphere radius="{radius}"/></geometry></collision></link></robot>'
+    )
+    names = {each.code.name for each in check(str(path)).findings}
+    assert ("inertia-geometry-mismatch" in names) == reported

@@ -11,6 +11,7 @@ from typing import Any
 from cartwheel import yaml_text
 from cartwheel.checks import nodes
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.launches.written import written_in
 from cartwheel.description.model import Element, RobotDescription
 from cartwheel.dialects.ros_control.files import read_parameters
@@ -169,7 +170,7 @@ class ControlFile:
 
     def origin(self, node: Any) -> Origin:
         """The line of a node."""
-        return Origin(file=str(self.path), line=node.start_mark.line + 1)
+        return Origin(file=shown_path(self.path), line=node.start_mark.line + 1)
 
     @cached_property
     def _composed(self) -> Any:
@@ -185,7 +186,9 @@ class ControlFile:
             return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
                 message=f"the controller file cannot be read: {problem}",
                 values={"problem": str(problem)},
-                origin=Origin(file=str(self.path), line=mark.line + 1 if mark is not None else 0),
+                origin=Origin(
+                    file=shown_path(self.path), line=mark.line + 1 if mark is not None else 0
+                ),
             )
         # The elements of a launch file are merged as well.
         written = self.path.suffix not in (".yaml", ".yml")

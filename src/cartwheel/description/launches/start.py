@@ -12,6 +12,7 @@ from typing import TypeVar
 
 from cartwheel.codes import files as codes
 from cartwheel.description.elements import xml
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.package_folders import is_file
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.regular_files import read_regular_text
@@ -97,7 +98,7 @@ def read_launch(
         raise DescriptionError(
             "the file does not exist" if missing else "the file is not a launch file",
             code=codes.FILE_MISSING if missing else codes.NOT_A_DESCRIPTION,
-            origin=Origin(file=str(file)),
+            origin=Origin(file=shown_path(file)),
             values={"kind": "file", "name": str(file), "meant": ""},
             hint="" if missing else "Its name must end in .launch, .launch.xml or .py.",
         )
@@ -254,7 +255,7 @@ def _not_found(facts: Facts) -> str:
 def _lost(file: Path, text: str, hint: str = "", *, line: int = 0, **values: str) -> Diagnostic:
     return codes.LAUNCH_VALUE_UNKNOWN.diagnostic(
         text,
-        origin=Origin(file=str(file), line=line),
+        origin=Origin(file=shown_path(file), line=line),
         hint=hint,
         values=values,
     )
@@ -332,7 +333,7 @@ def _unused(file: Path, arguments: Mapping[str, str], facts: Facts) -> list[Diag
     return [
         codes.ARGUMENT_UNKNOWN.diagnostic(
             f'the argument "{name}" has no effect: the launch file does not declare it',
-            origin=Origin(file=str(file)),
+            origin=Origin(file=shown_path(file)),
             values={"name": name, "meant": meant(name, facts.declared)},
             hint=suggestion(name, sorted(facts.declared)),
         )
@@ -355,6 +356,6 @@ def _failure(file: Path, reason: str, named: str = "") -> DescriptionError:
     return DescriptionError(
         reason,
         code=codes.NOT_A_DESCRIPTION,
-        origin=Origin(file=str(file), line=line),
+        origin=Origin(file=shown_path(file), line=line),
         hint=f"Launch files are read, but not executed. {named}Pass the description that it loads.",
     )

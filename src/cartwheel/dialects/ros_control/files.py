@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from cartwheel import yaml_text
 from cartwheel.codes import devices
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.launches.written import written_in
@@ -160,11 +161,11 @@ def read_yaml(path: Path) -> dict[str, Any]:
         content = loader.construct_document(node) if node is not None else None
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         text, line = yaml_text.fault(error)
-        raise _unreadable(text, Origin(file=str(path), line=line)) from None
+        raise _unreadable(text, Origin(file=shown_path(path), line=line)) from None
     if content is None:
         return {}
     if not isinstance(content, dict):
-        raise _unreadable("the file is not a mapping of parameters", Origin(file=str(path)))
+        raise _unreadable("the file is not a mapping of parameters", Origin(file=shown_path(path)))
     return content
 
 
@@ -198,7 +199,7 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
         raise PluginError(
             "the file has no ros__parameters, but the robot uses ros2_control",
             code=devices.CONTROLLERS_FILE_MISMATCH,
-            origin=Origin(file=str(path)),
+            origin=Origin(file=shown_path(path)),
             hint="Nest the parameters under the name of their node and ros__parameters.",
         )
     return content

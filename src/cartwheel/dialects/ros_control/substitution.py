@@ -14,6 +14,7 @@ from typing import Any
 
 from cartwheel import yaml_text
 from cartwheel.codes import devices
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.packages import Packages
 from cartwheel.errors import CartwheelError, Origin, PluginError
 from cartwheel.options import xacro_argument
@@ -54,7 +55,7 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
             raise PluginError(
                 f"{match[0]} has no value because the description has no argument of this name",
                 code=devices.CONTROLLERS_FILE_ARGUMENT,
-                origin=Origin(file=str(path)),
+                origin=Origin(file=shown_path(path)),
                 hint=f"Write the value into the file, or pass {xacro_argument(name)}."
                 if not arguments
                 else f"Arguments of the robot: {', '.join(sorted(arguments))}.",
@@ -63,7 +64,7 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
         raise PluginError(
             f"{match[0]} cannot be evaluated",
             code=devices.CONTROLLERS_FILE_ARGUMENT,
-            origin=Origin(file=str(path)),
+            origin=Origin(file=shown_path(path)),
             hint="Write the value into the file.",
             values={"name": match[0]},
         )
@@ -77,7 +78,7 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
             raise PluginError(
                 error.message,
                 code=devices.CONTROLLERS_FILE_ARGUMENT,
-                origin=Origin(file=str(path)),
+                origin=Origin(file=shown_path(path)),
                 hint=error.hint,
                 values=error.values,
             ) from None

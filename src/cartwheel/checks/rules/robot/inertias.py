@@ -35,6 +35,9 @@ TOO_LARGE = 1.5
 """Maximum ratio to the inertia of the same mass placed at the corners of the geometry's box."""
 TOO_SMALL = 20.0
 """Maximum ratio of the inertia of a solid of the same shape to the stated inertia."""
+_MARKER = 1e-3
+"""Size of the geometry of a link that only marks a place, m. The inertia of such a body would be
+too small for Gazebo."""
 _LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
 """Relative rounding error of a value that should be 0."""
@@ -146,6 +149,8 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
             continue
         centre = np.array(inertial.pose.position)
         corner = np.maximum(np.abs(box[0] - centre), np.abs(box[1] - centre))
+        if float(np.max(box[1] - box[0])) < _MARKER:
+            continue
         stated = sum(inertial.diagonal) / 2
         largest = inertial.mass * float(corner @ corner)
         like = shape_inertia(robot, link)

@@ -17,6 +17,7 @@ from cartwheel.codes.devices import (
     CONTROLLER_UNDEFINED,
     CONTROLLERS_FILE_UNREADABLE,
 )
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.launches import LaunchUse, root_of
 from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.model import RobotDescription
@@ -94,7 +95,7 @@ def undefined(
             yield CONTROLLER_UNDEFINED.diagnostic(
                 f'"{starter.file.name}" starts the controller "{name}", but no file near it '
                 "contains its parameters, so it cannot be loaded",
-                origin=Origin(file=str(starter.file)),
+                origin=Origin(file=shown_path(starter.file)),
                 values={"controller": name, "absent": tuple(map(str, starter.absent))},
                 hint=f"The launch file loads files that were not found: {lost}. They may be in "
                 "packages that are not installed."
@@ -167,7 +168,7 @@ def _misplaced(
         )
     return CONTROLLER_UNDEFINED.diagnostic(
         message,
-        origin=Origin(file=str(file)),
+        origin=Origin(file=shown_path(file)),
         values={
             "controller": first,
             "controllers": tuple(names),
@@ -240,7 +241,7 @@ def only_loaded(starter: LaunchUse | None) -> Iterator[Diagnostic]:
             f'"{starter.file.name}" only loads the controller "{name}", so it does not command '
             "joints until it is started",
             severity="warning" if undecided else "info",
-            origin=Origin(file=str(starter.file)),
+            origin=Origin(file=shown_path(starter.file)),
             hint="Add --set-state active to the command." if undecided else "",
             values={"controller": name},
         )
