@@ -441,9 +441,8 @@ WITHOUT_PLACE: dict[str, Case] = {
     "damping": ("damping-too-high", [('<limit lower="-1" upper="1" effort="5" velocity="2"/>\n  </joint>\n  <link name="arm">',
         '<limit lower="-1" upper="1" effort="5" velocity="2"/><dynamics damping="100"/></joint>\n<link name="arm">'),
         transmission("arm_joint", EFFORT)], None, ""),
-    "materials differ": ("material-differs", [('<link name="base_footprint"/>',
-        '<material name="blue">\n<color rgba="0 1 0 1"/>\n</material><link name="base_footprint"/>')],
-        None, ""),
+    "materials differ": ("material-differs", [('<material name="blue"/>',
+        '<material name="blue">\n<color rgba="0 1 0 1"/>\n</material>')], None, ""),
     "battery": ("not-simulated", [("<mu1>1.0</mu1>", '<battery name="b"/>')],
         "battery", ""),
 }  # fmt: skip
