@@ -318,3 +318,9 @@ PLUGIN_OF_OTHER_ROS = Code(
     "warning",
     "a plugin exists only in the version of ROS for which the package is not built",
 )
+ODOMETRY_FRAME_IS_LINK = Code(
+    "CW493",
+    "odometry-frame-is-link",
+    "warning",
+    "the odometry frame of a drive is a link of the robot",
+)

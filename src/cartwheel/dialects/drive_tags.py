@@ -38,7 +38,7 @@ def odometry_topic(*names: str) -> Any:
 
 def odometry_frame(*names: str) -> Any:
     """The frame ID of the odometry."""
-    return tag(*names, default="odom", doc="Frame ID of the odometry.")
+    return tag(*names, default="odom", role="odometry_frame", doc="Frame ID of the odometry.")
 
 
 def base_frame(*names: str, default: str = "base_footprint") -> Any:

@@ -23,6 +23,7 @@ Role = Literal[
     "steering",
     "link",
     "frame",
+    "odometry_frame",
     "rate",
     "topic",
     "namespace",
@@ -37,6 +38,7 @@ Role = Literal[
 - ``wheel_separation``: distance between wheels across the robot; ``wheel_base``: along it.
 - ``link``: the link that the plugin measures or moves.
 - ``frame``: the frame ID of messages, which is the name of a link.
+- ``odometry_frame``: the frame of an odometry, in which the robot moves.
 - ``rate``: how often per second the plugin does something.
 - ``topic``: a topic on which the plugin publishes; ``namespace``: the first part of its name,
   which defaults to the plugin's name.
