@@ -17,6 +17,7 @@ LEG = (
     '<origin xyz="0 {y} 0.03"/><axis xyz="0 1 0"/>'
     '<limit lower="{lower}" upper="{upper}" effort="5" velocity="10"/>{more}</joint>'
 )
+MANAGER = '<gazebo><plugin name="c" filename="gz_ros2_control-system"/></gazebo>'
 
 
 def legs(lower, upper, more=""):
@@ -43,15 +44,19 @@ def test_a_joint_that_starts_outside_its_limits_is_reported(tmp_path, lower, upp
     assert all(each.severity == "info" for each in found)
 
 
-@pytest.mark.parametrize(("start", "reported"), [(1.0, False), (2.0, True), (None, True)])
-def test_the_initial_value_of_controllers_counts(tmp_path, start, reported):
+@pytest.mark.parametrize(
+    ("start", "manager", "reported"),
+    [(1.0, MANAGER, False), (2.0, MANAGER, True), (None, MANAGER, True), (1.0, "", True)],
+)
+def test_the_initial_value_counts_if_a_plugin_reads_it(tmp_path, start, manager, reported):
     value = "" if start is None else f'<param name="initial_value">{start}</param>'
     control = (
         '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
         '</plugin></hardware><joint name="hip"><command_interface name="position"/>'
         f'<state_interface name="position">{value}</state_interface></joint></ros2_control>'
     )
-    path = written(tmp_path, cart(), LEG.format(y=0, lower=0.8, upper=1.5, more=""), control)
+    leg = LEG.format(y=0, lower=0.8, upper=1.5, more="")
+    path = written(tmp_path, cart(), leg, control, manager)
     assert (START_OUTSIDE_LIMITS in codes(path)) is reported
 
 

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.description.kinematics import center_of_mass, link_poses
 from cartwheel.description.model import Capsule, Cylinder, Ellipsoid, Shape, Sphere
 from cartwheel.description.solids import Floats
+from cartwheel.dialects.ros_control.interfaces import ros2_control
+from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, matrix_from_quat
 
 _STEPS = 100
@@ -43,7 +44,7 @@ def starting_positions(robot: Robot, *, commanded: bool = True) -> dict[str, flo
     A joint starts at the initial value of its ros2_control interface, if it is `commanded`, or at
     0, or else at its limit that is nearest to this position.
     """
-    initial = _initial_positions(robot) if commanded else {}
+    initial = initial_positions(robot) if commanded else {}
     return initial | {
         joint.name: min(max(initial.get(joint.name, 0.0), joint.axis.lower), joint.axis.upper)
         for joint in robot.description.joints
@@ -62,20 +63,16 @@ def starting_poses(robot: Robot, *, commanded: bool = True) -> Mapping[str, Pose
     return link_poses(robot.description, positions)
 
 
-def _initial_positions(robot: Robot) -> dict[str, float]:
-    """The initial positions in the interfaces of simulated ros2_control, by joint, rad or m."""
+def initial_positions(robot: Robot) -> dict[str, float]:
+    """Positions at which simulated ros2_control starts joints, by name, rad or m."""
     if not any("ros2_control" in tag.filename for tag in robot.description.plugins):
         return {}
+    try:
+        joints, _, _ = ros2_control(robot.description)
+    except PluginError:
+        return {}
     return {
-        name: value
-        for control in robot.description.ros2_control
-        for joint in control.find_all("joint")
-        if (name := (joint.attribute("name") or "").strip()) in robot.joints
-        for state in joint.find_all("state_interface")
-        if state.attribute("name") == "position"
-        for param in state.find_all("param")
-        if param.attribute("name") == "initial_value"
-        if (value := nodes.number(param.text)) is not None
+        each.name: each.initial_position for each in joints if each.initial_position is not None
     }
 
 

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 
 from cartwheel.checks import edits, nodes
 from cartwheel.checks.kinematic_tree import joints_with_types
-from cartwheel.checks.robot import Robot
+from cartwheel.checks.resting import initial_positions
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
-from cartwheel.dialects.ros_control.interfaces import ros2_control
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.errors import Diagnostic
 
 _LIMITED = ("revolute", "prismatic")
 _OUTSIDE = {"rad": 0.02, "m": 0.002}
@@ -101,7 +100,7 @@ def start_outside_limits(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if robot.description.static:
             continue
-        stated = _initial_positions(robot)
+        stated = initial_positions(robot)
         for joint in robot.description.joints:
             lower, upper = joint.axis.lower, joint.axis.upper
             start = stated.get(joint.name, 0.0)
@@ -118,17 +117,6 @@ def start_outside_limits(subject: Subject) -> Iterator[Diagnostic]:
                     origin=joint.origin,
                     hint="Spawn the robot with the joint within its limits.",
                 )
-
-
-def _initial_positions(robot: Robot) -> dict[str, float]:
-    """The positions at which controllers of ROS 2 start joints, rad or m."""
-    try:
-        joints, _, _ = ros2_control(robot.description)
-    except PluginError:
-        return {}
-    return {
-        each.name: each.initial_position for each in joints if each.initial_position is not None
-    }
 
 
 def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Diagnostic]:
