@@ -37,6 +37,18 @@ def test_a_negative_multiplier_makes_up_for_a_reversed_axis(tmp_path):
     assert not found(path)
 
 
+@pytest.mark.wording
+@pytest.mark.parametrize("sides", [(0,), (0, 1)])
+def test_the_message_states_the_axis_of_the_other_wheel_if_it_points_to_the_left(tmp_path, sides):
+    path = written(tmp_path, reversed_cart(*sides), controlled(tmp_path))
+    if 1 in sides:
+        file = tmp_path / "base.yaml"
+        file.write_text(file.read_text() + "    right_wheel_radius_multiplier: -1.0\n")
+    (one,) = found(path)
+    assert one.values["joint"] == "left_joint"
+    assert ("the other wheel's axis to the left" in one.message) is (1 not in sides)
+
+
 def test_reversed_axes_of_swapped_wheels_face_backwards(tmp_path):
     path = written(tmp_path, reversed_cart(0, 1), controlled(tmp_path, swapped=True))
     assert not found(path)

@@ -82,7 +82,7 @@ def _of_pair(
     both = all(sense * way < -CAMBER for sense, way in zip(senses, ways, strict=True))
     if both and faces_backwards(robot, left, right):
         return
-    for joint, sense, way in zip((left, right), senses, ways, strict=True):
+    for joint, sense, way, other in zip((left, right), senses, ways, reversed(senses), strict=True):
         if joint.name in reported:
             continue
         if sense > -CAMBER:
@@ -94,7 +94,7 @@ def _of_pair(
                 yield _not_across(robot, joint, toward_left)
         elif way > 0:
             reported.add(joint.name)
-            more = "" if both else " and the other wheel's axis to the left"
+            more = " and the other wheel's axis to the left" if other > CAMBER else ""
             yield _backwards(robot, joint, more, every=both and every)
 
 
