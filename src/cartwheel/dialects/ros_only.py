@@ -79,6 +79,19 @@ def only_in(filename: str) -> tuple[Literal[1, 2], str] | None:
     return (2, _REPLACEMENTS[2][name]) if name in _REPLACEMENTS[2] else None
 
 
+def ros_of(file: Path, tag: PluginTag) -> Literal[1, 2] | None:
+    """The version of ROS of a plugin: that of its package, or else ROS 2 if it has a ``<ros>``.
+
+    Args:
+        file: A file of the package.
+        tag: The plugin.
+
+    Returns:
+        None if neither states it.
+    """
+    return ros_version(file) or (2 if tag.element.find("ros") is not None else None)
+
+
 def other_tags(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:
     """The finding that a plugin does not work, because its tags are those of another ROS version.
 
@@ -93,7 +106,7 @@ def other_tags(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:
     if not required:
         return None
     file = Path(robot.origin.file)
-    own = ros_version(file) or (2 if tag.element.find("ros") is not None else None)
+    own = ros_of(file, tag)
     if own is None or _builds(file, short_name(tag.filename)):
         return None
     for first, second in required:
@@ -120,8 +133,7 @@ def unread_tags(robot: RobotDescription, tag: PluginTag) -> Iterator[tuple[Eleme
     """
     name, file = short_name(tag.filename), Path(robot.origin.file)
     plugin = plugin_named(tag.filename)
-    own = ros_version(file) or (2 if tag.element.find("ros") is not None else None)
-    if own != 2 or plugin is None or not name.startswith(_ROS_PACKAGE):
+    if ros_of(file, tag) != 2 or plugin is None or not name.startswith(_ROS_PACKAGE):
         return
     if name in _REPLACEMENTS[1]:
         return

@@ -11,7 +11,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import is_legacy, wheel_pairs
 from cartwheel.codes import devices as devices_codes
-from cartwheel.description.files.ros_version import ros_version
+from cartwheel.dialects.ros_only import ros_of
 from cartwheel.dialects.wheel_pairs import are_swapped
 from cartwheel.errors import Diagnostic
 
@@ -69,5 +69,5 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
 def _ros(drive: Drive) -> int:
     """The version of ROS for which a drive is written: that of its package, or by its tags."""
     element = drive.tag.element
-    new = element.find("ros") is not None or element.find("left_joint") is not None
-    return ros_version(Path(element.origin.file)) or (2 if new else 1)
+    stated = ros_of(Path(element.origin.file), drive.tag)
+    return stated or (1 if element.find("left_joint") is None else 2)
