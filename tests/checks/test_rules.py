@@ -478,6 +478,9 @@ def test_a_motor_without_force_is_given_what_bears_its_load(bench, spoil):
     )
     weak = ('lower="-1" upper="1" effort="5"', 'lower="-1" upper="1" effort="0"')
     assert bench.find(spoil(drive, weak), "effort-zero")[0].instead == 'effort="10"'
+    measured = '<joint name="arm_joint"><state_interface name="position"/></joint>'
+    only_measured = (drive[0], drive[1].replace('<joint name="arm_joint"/>', measured))
+    assert not bench.find(spoil(only_measured, weak), "effort-zero")
     # 30 kg at 0.1 m and 0.1 kg at 0.21 m: 2 * 9.8 * 3.021 = 59.2
     heavy = ('<mass value="0.3"/>', '<mass value="30"/>')
     assert bench.find(spoil(drive, weak, heavy), "effort-zero")[0].instead == 'effort="60"'

@@ -7,7 +7,9 @@ from cartwheel.codes.devices import (
     CONTROLLER_GAIN_TOO_LOW,
     DERIVATIVE_GAIN_TOO_HIGH,
     EFFORT_LIMIT_TOO_LOW,
+    PLUGIN_UNKNOWN,
 )
+from cartwheel.codes.robot import JOINTS_UNDRIVEN
 from cartwheel.corpus import try_robot
 
 CORNERS = {"fl": (1, 1), "fr": (1, -1), "rl": (-1, 1), "rr": (-1, -1)}
@@ -40,11 +42,11 @@ def quadruped(rest, *, bend=0.0, effort=200.0, mass=10.0):
     return f'<robot name="dog">{"".join(parts)}{rest}</robot>'
 
 
-def tried(tmp_path, text, controllers):
+def tried(tmp_path, text, controllers=""):
     path, files = tmp_path / "dog.urdf", tmp_path / "hold.yaml"
     path.write_text(text)
     files.write_text(controllers)
-    return try_robot(path, standing=4.0, controllers=(files,))
+    return try_robot(path, standing=4.0, controllers=(files,) if controllers else ())
 
 
 def ros1(kind, *, p, d):
@@ -69,6 +71,18 @@ def test_gains_that_let_legs_give_way_are_the_reason_why_a_robot_sinks(tmp_path,
     if not stands:
         (reason,) = (each.reason for each in verdict.faults if each.test == "stand")
         assert reason.values["sagged"] > 0.05
+
+
+@pytest.mark.parametrize(
+    ("plugin", "code"),
+    [("libmy_own_gait.so", PLUGIN_UNKNOWN), ("libmy_own_sensor.so", JOINTS_UNDRIVEN)],
+)
+def test_an_unsupported_plugin_may_hold_joints_that_give_way(tmp_path, plugin, code):
+    rest = f'<gazebo><plugin name="own" filename="{plugin}"/></gazebo>'
+    verdict = tried(tmp_path, quadruped(rest, bend=0.5))
+    (fault,) = (each for each in verdict.faults if each.test == "stand")
+    assert fault.code is code
+    assert fault.source == ("unknown" if code is PLUGIN_UNKNOWN else "file")
 
 
 ROS2 = """controller_manager:

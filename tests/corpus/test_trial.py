@@ -212,6 +212,18 @@ def test_a_size_does_not_explain_an_error_in_the_other_direction():
     assert cause_of_drive([separation, shape], 0.98, turning=True) is separation
 
 
+def test_swapped_wheels_reverse_either_the_drive_or_the_turn():
+    swapped = WHEELS_SWAPPED.diagnostic("swapped", severity="warning")
+    radius = WHEEL_DIAMETER_MISMATCH.diagnostic(
+        "too small", severity="warning", values={"stated": 0.05, "measured": 0.1}
+    )
+    drags = BODY_ON_GROUND.diagnostic("a caster brakes it", severity="info")
+    found = [swapped, radius, drags]
+    assert cause_of_drive(found, 1.5) is radius
+    assert cause_of_drive(found, -1.6, turning=True) is swapped
+    assert cause_of_drive([drags], 0.5) is drags
+
+
 def test_a_plugin_that_measures_does_not_explain_why_a_base_drives_backward():
     publisher = PLUGIN_LEFT_OUT.diagnostic(
         "no such joint", values={"plugin": "libgazebo_ros_joint_state_publisher.so"}

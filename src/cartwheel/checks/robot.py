@@ -246,9 +246,13 @@ class Robot:
     def driven(self) -> frozenset[str]:
         """Joints that a plugin, a transmission or ros2_control moves."""
         names = {name for drive in self.drives for name in drive.joints}
-        for element in (*self.description.transmissions, *self.description.ros2_control):
+        for element in self.description.transmissions:
             for joint in element.find_all("joint"):
                 names.add((joint.attribute("name") or "").strip())
+        for element in self.description.ros2_control:
+            for joint in element.find_all("joint"):
+                if _is_commanded(joint):
+                    names.add((joint.attribute("name") or "").strip())
         return frozenset(names)
 
     def node_at(self, origin: Origin) -> Node | None:
@@ -284,3 +288,10 @@ class Robot:
         parts = link.visuals if visual else link.collisions
         found = [solid_of(part, link.name) for part in parts]
         return [solid for solid in found if solid is not None and len(solid.vertices)]
+
+
+def _is_commanded(joint: Element) -> bool:
+    """Whether a joint in ros2_control is commanded or mimics another one, not only measured."""
+    tags = {each.tag for each in joint.children}
+    mimics = (each.attribute("name") == "mimic" for each in joint.find_all("param"))
+    return "command_interface" in tags or "state_interface" not in tags or any(mimics)

@@ -26,6 +26,8 @@ _BRAKED = 0.15
 """Largest part of the speed that a sliding caster takes while the base drives straight ahead."""
 _PULLED = 0.5
 """Largest part of the turn rate for which wheels that point to one side account."""
+_REVERSED = 0.5
+"""Part of the speed from which a base moves the other way, rather than hardly."""
 _TOO_FAST = 0.05
 """Relative error from which a base is too fast."""
 _STUCK = 0.1
@@ -134,6 +136,10 @@ def _cause(
         for each in found
         if (factor := _factor(each, turning)) is not None
     }
+    swapped = factors.get(robot.WHEELS_SWAPPED)
+    if swapped is not None and ratio > 0.0:
+        # It reverses either the drive or the turn.
+        factors.pop(robot.WHEELS_SWAPPED)
     if robot.SKID_STEERING in factors:
         # Its ratio contains the stated separation, and the parts that the base drags.
         factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
@@ -160,6 +166,8 @@ def _cause(
         return max(factors.values(), key=lambda pair: (pair[1] - 1.0) * (ratio - 1.0))[0]
     if (combined := _combined(factors, ratio)) is not None:
         return combined
+    if swapped is not None and ratio < -_REVERSED:
+        return swapped[0]
     if arc and factors:
         # Steering and rim speeds contradict each other, so the wheels slide.
         expected = [1.0, *(factor for _, factor in factors.values())]

@@ -9,6 +9,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import wheel_axis, wheel_links
 from cartwheel.codes import devices, files, robot
 from cartwheel.corpus.faults import coded, most_severe
+from cartwheel.corpus.movers import may_move
 from cartwheel.corpus.verdict import Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.errors import Diagnostic
@@ -100,7 +101,25 @@ def cause_of_fall(
     if any(_tips_rigid(each, stand) for each in reasons):
         # Even if its joints were held.
         reasons = [each for each in reasons if each.code is not robot.JOINTS_UNDRIVEN]
-    return most_severe(reasons) or idle or _pushed(found, description) or _badly_held(found, stand)
+    reason = most_severe(reasons) or idle or _pushed(found, description)
+    if reason is not None and reason.code is robot.JOINTS_UNDRIVEN:
+        return _unsupported(found, description) or reason
+    return reason or _badly_held(found, stand)
+
+
+def _unsupported(found: Sequence[Diagnostic], description: RobotDescription) -> Diagnostic | None:
+    """The finding that a plugin is not supported that may hold the joints."""
+    names = {tag.filename for tag in description.plugins if may_move(tag.filename)}
+    return next(
+        (
+            each
+            for each in found
+            if each.code is devices.PLUGIN_UNKNOWN
+            and not names.isdisjoint({each.values.get("name"), each.values.get("plugin")})
+            and not each.values.get("meant")
+        ),
+        None,
+    )
 
 
 def _badly_held(found: Sequence[Diagnostic], stand: Stand) -> Diagnostic | None:

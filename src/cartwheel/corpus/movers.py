@@ -70,7 +70,7 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         and (
             _MOVES.search(name)
             or (
-                _may_move(tag.filename)
+                may_move(tag.filename)
                 and (waits or _TRAVELS.search(name) or _acts(tag.element, joints))
             )
         )
@@ -85,7 +85,7 @@ def is_mover(filename: str) -> bool:
 
 def may_drive(filename: str, words: Set[str], joints: Set[str]) -> bool:
     """Whether a plugin is not supported, and the `words` in its tags name some of the `joints`."""
-    return _may_move(filename) and not joints.isdisjoint(words)
+    return may_move(filename) and not joints.isdisjoint(words)
 
 
 def ignored_movers(robot: RobotDescription) -> list[tuple[str, Diagnostic]]:
@@ -109,7 +109,7 @@ def ignored_movers(robot: RobotDescription) -> list[tuple[str, Diagnostic]]:
         acts = isinstance(tags, tuple) and any(_COMMANDS.search(str(tag)) for tag in tags)
         for filename in map(str, names):
             name = short_name(filename)
-            moves = is_mover(filename) or ((acts or waits) and _may_move(filename))
+            moves = is_mover(filename) or ((acts or waits) and may_move(filename))
             if moves and name not in loaded:
                 found.setdefault(name, each)
     return list(found.items())
@@ -134,7 +134,7 @@ def is_own_mover(tag: PluginTag) -> bool:
     return bool(_TRAVELS.search(short_name(tag.filename)))
 
 
-def _may_move(filename: str) -> bool:
+def may_move(filename: str) -> bool:
     """Whether a plugin is not supported, and its name does not say that it only measures."""
     name = short_name(filename)
     known = plugin_named(filename) or name in BUILT_IN or name in WITHOUT_EFFECT
