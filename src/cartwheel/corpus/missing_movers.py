@@ -68,8 +68,8 @@ def _stands_still(description: RobotDescription) -> bool:
         for system in description.ros2_control
         if any(joint.find("command_interface") for joint in system.find_all("joint"))
     ]
-    lost = [system for system, _ in unloaded_systems(description)]
-    return bool(lost) and all(any(each is one for one in lost) for each in commanded)
+    lost = {id(system) for system, _ in unloaded_systems(description)}
+    return bool(lost) and all(id(each) in lost for each in commanded)
 
 
 def unmanaged_transmissions(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:

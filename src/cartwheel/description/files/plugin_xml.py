@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -32,41 +32,42 @@ def exporting_file(file: Path, name: str) -> Path | None:
     Returns:
         None if no file exports it, or if the repository is unknown.
     """
-    found = _found(file, name)
-    return None if found is None else found[0]
+    return next((path for path, _ in _found(file, (name,)).values()), None)
 
 
-def base_class(file: Path, name: str) -> str | None:
-    """The base class that the repository of a file states where it exports a class.
+def base_classes(file: Path, names: Collection[str]) -> dict[str, str]:
+    """The base classes that the repository of a file states where it exports classes.
 
     Args:
         file: Any file of the repository.
-        name: The class, such as ``my_driver/MyHardware``.
+        names: The classes, such as ``my_driver/MyHardware``.
 
     Returns:
-        A class, such as ``hardware_interface::SystemInterface``; empty if none is stated. None if
-        no file exports the class, or if the repository is unknown.
+        A class, such as ``hardware_interface::SystemInterface``, for each name that the repository
+        exports; empty if none is stated.
     """
-    found = _found(file, name)
-    return None if found is None else found[1]
+    return {name: base for name, (_, base) in _found(file, names).items()}
 
 
-def _found(file: Path, name: str) -> tuple[Path, str] | None:
-    """The XML file that exports a class, and the base class that it states."""
-    root = repository_of(file)
+def _found(file: Path, names: Collection[str]) -> dict[str, tuple[Path, str]]:
+    """The XML files that export classes, and the base classes that they state, by name."""
+    root = repository_of(file) if names else None
+    found: dict[str, tuple[Path, str]] = {}
     if root is None:
-        return None
+        return found
     folders = itertools.chain([root], (folder for _, folder in packages_below(root)))
-    plain = name.strip().replace("::", "/")
+    missing = {name: name.strip().replace("::", "/") for name in names}
     for folder in itertools.islice(folders, _PACKAGES):
         for path in itertools.islice(sorted(folder.glob("*.xml")), _FILES):
             try:
                 exported = _exported(path, path.stat().st_mtime_ns)
-                if plain in exported:
-                    return path, exported[plain]
             except OSError:
                 continue
-    return None
+            for name in [name for name, plain in missing.items() if plain in exported]:
+                found[name] = path, exported[missing.pop(name)]
+            if not missing:
+                return found
+    return found
 
 
 @lru_cache(maxsize=2 * _PACKAGES * _FILES)

@@ -121,8 +121,9 @@ class Ros2Control(ControlPlugin):
         joints, sensors, notes = ros2_control(part.description)
         for note in notes:
             part.report(note)
+        skipped = {id(system) for system, _ in unloaded_systems(part.description)}
         for system in simulated_systems(part.description):
-            self._check_system(system)
+            self._check_system(system, skipped=id(system) in skipped)
         if not joints:
             self.warn(
                 devices.CONTROL_WITHOUT_JOINTS,
@@ -194,7 +195,7 @@ class Ros2Control(ControlPlugin):
             return None
         return path
 
-    def _check_system(self, system: Element) -> None:
+    def _check_system(self, system: Element, *, skipped: bool) -> None:
         name = hardware_of(system)
         own = package_system(name)
         if own and name not in SYSTEMS:
@@ -207,7 +208,6 @@ class Ros2Control(ControlPlugin):
                 values={"hardware": name, "meant": own},
             )
         elif name and name not in SYSTEMS:
-            skipped = any(each is system for each, _ in unloaded_systems(self.part.description))
             why = "is not loaded in Gazebo, where its joints do not move; here, they"
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,

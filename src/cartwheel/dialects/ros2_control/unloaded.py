@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from cartwheel.description.files.plugin_xml import base_class
+from cartwheel.description.files.plugin_xml import base_classes
 from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.interfaces import (
@@ -48,12 +48,20 @@ def unloaded_systems(robot: RobotDescription) -> list[tuple[Element, PluginTag]]
         if hardware_of(system) in loads
         for name in _joints(system)
     }
-    return [
-        (system, manager)
+    left = [
+        system
         for system in robot.ros2_control
         if _joints(system) - served
         and hardware_of(system) not in loads
-        and not _may_be_loaded(hardware_of(system), Path(robot.origin.file))
+        and _is_named(hardware_of(system))
+    ]
+    foreign = {hardware_of(system) for system in left if not _is_simulated(hardware_of(system))}
+    bases = base_classes(Path(robot.origin.file), foreign)
+    return [
+        (system, manager)
+        for system in left
+        if hardware_of(system) not in foreign
+        or not _may_be_loaded(hardware_of(system), bases.get(hardware_of(system), ""))
     ]
 
 
@@ -71,13 +79,15 @@ def _joints(system: Element) -> set[str]:
     }
 
 
-def _may_be_loaded(hardware: str, file: Path) -> bool:
+def _is_named(hardware: str) -> bool:
+    return bool(hardware) and "$" not in hardware
+
+
+def _is_simulated(hardware: str) -> bool:
+    """Whether hardware is in a package that contains simulated hardware."""
+    return hardware in SYSTEMS or bool(package_system(hardware))
+
+
+def _may_be_loaded(hardware: str, base: str) -> bool:
     """Whether hardware that is not simulated may be for Gazebo."""
-    if not hardware or "$" in hardware:
-        return True
-    if hardware in SYSTEMS or package_system(hardware):
-        return False
-    base = base_class(file, hardware)
-    if base:
-        return bool(_DERIVED.search(base))
-    return bool(_FOR_SIMULATION.search(hardware))
+    return bool(_DERIVED.search(base) if base else _FOR_SIMULATION.search(hardware))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
 from cartwheel.checks import nodes
@@ -53,10 +53,12 @@ def _unloaded(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
     It is a note if an argument of the xacro decides about it, and no launch file starts Gazebo with
     the arguments that the user states.
     """
-    for system, manager in unloaded_systems(robot.description):
+    systems = unloaded_systems(robot.description)
+    choices = _Choices(subject.written if systems else ())
+    for system, manager in systems:
         hardware, name = hardware_of(system), system.attribute("name") or ""
         element = system.find("hardware/plugin") or system
-        chosen = _depends(subject, element.origin) and not _is_started(subject)
+        chosen = choices.concern(element.origin) and not _is_started(subject)
         own = package_system(hardware)
         meant = own if own in loaded_by(robot.description) else ""
         why = f'"{manager.filename}" does not load it'
@@ -98,43 +100,50 @@ def _is_started(subject: Subject) -> bool:
     return all(stated.get(name, value) == value for name, value in use.arguments.items())
 
 
-def _depends(subject: Subject, origin: Origin) -> bool:
-    """Whether other arguments may replace an element: a condition or an expression decides about
-    it, about a macro call that produces it, or about the include of its file.
+class _Choices:
+    """What arguments of a xacro decide about: elements in conditions, and with expressions.
+
+    Args:
+        files: The files of the xacro, as written.
     """
-    places = {(origin.file, origin.line)}
-    for call in origin.stack:
-        file, _, line = call.partition(" ")[0].rpartition(":")
-        if line.isdigit():
-            places.add((file, int(line)))
-    names = {PurePath(file).name for file, _ in places}
-    while True:
-        found = False
-        for node, decided in _with_conditions(subject):
-            here = (node.origin.file, node.origin.line) in places
-            included = node.tag == "xacro:include" and _included(node) in names
-            if (here or included) and (decided or "$(arg" in node.attributes.get("filename", "")):
-                return True
-            if here and "$" in node.text:
-                return True
-            if included and PurePath(node.origin.file).name not in names:
-                # What decides about the include of a file decides about the files it includes.
-                names.add(PurePath(node.origin.file).name)
-                found = True
-        if not found:
-            return False
 
+    def __init__(self, files: Iterable[Node]) -> None:
+        self._places: set[tuple[str, int]] = set()
+        """The files and lines of elements about which arguments decide."""
+        self._includes: dict[str, list[tuple[str, bool]]] = {}
+        """The files that include a file, each with whether arguments decide about it, by name."""
+        waiting = [(file, False) for file in files]
+        while waiting:
+            node, inside = waiting.pop()
+            decided = inside or "$(arg" in node.attributes.get("filename", "")
+            if decided or "$" in node.text:
+                self._places.add((node.origin.file, node.origin.line))
+            if node.tag == "xacro:include":
+                name = PurePath(nodes.text_of(node, "filename")).name
+                holder = PurePath(node.origin.file).name
+                self._includes.setdefault(name, []).append((holder, decided))
+            inside = inside or node.tag in _CONDITIONS
+            waiting.extend((child, inside) for child in node.children)
 
-def _with_conditions(subject: Subject) -> Iterator[tuple[Node, bool]]:
-    """All elements as written, each with whether it is inside a condition."""
-    waiting = [(tree, False) for tree in subject.written]
-    while waiting:
-        node, decided = waiting.pop()
-        yield node, decided
-        decided = decided or node.tag in _CONDITIONS
-        waiting.extend((child, decided) for child in node.children)
-
-
-def _included(node: Node) -> str:
-    """The name of an included file, without its folder."""
-    return PurePath(nodes.text_of(node, "filename")).name
+    def concern(self, origin: Origin) -> bool:
+        """Whether other arguments may replace an element: a condition or an expression decides
+        about it, about a macro call that produces it, or about the include of its file.
+        """
+        places = {(origin.file, origin.line)}
+        for call in origin.stack:
+            file, _, line = call.partition(" ")[0].rpartition(":")
+            if line.isdecimal():
+                places.add((file, int(line)))
+        if not places.isdisjoint(self._places):
+            return True
+        names = {PurePath(file).name for file, _ in places}
+        waiting = sorted(names)
+        while waiting:
+            for holder, decided in self._includes.get(waiting.pop(), ()):
+                if decided:
+                    return True
+                if holder not in names:
+                    # What decides about the include of a file decides about those it includes.
+                    names.add(holder)
+                    waiting.append(holder)
+        return False
