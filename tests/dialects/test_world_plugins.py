@@ -50,8 +50,11 @@ def test_what_is_built_in_is_not(filename):
 
 
 @pytest.mark.parametrize("place", ["world", "model"])
-@pytest.mark.parametrize("name", ["LinkPlot3DPlugin", "KeysToCmdVelPlugin"])
-def test_a_plugin_for_the_window_is_a_note(name, place):
+@pytest.mark.parametrize(
+    "name",
+    ["LinkPlot3DPlugin", "KeysToCmdVelPlugin", "roboticsgroup_gazebo_disable_link_plugin"],
+)
+def test_a_plugin_without_effect_is_a_note(name, place):
     plugin = f'<plugin name="p" filename="lib{name}.so"/>'
     inside = plugin if place == "world" else f'<model name="m"><link name="l"/>{plugin}</model>'
     session = Session(load_text(f'<sdf version="1.6"><world name="w">{inside}</world></sdf>'))

@@ -48,13 +48,31 @@ DISPLAY_ONLY = frozenset(
 """Plugins that only change what Gazebo's window shows."""
 KEYS_OF_WINDOW = frozenset({"KeysToCmdVelPlugin"})
 """Plugins that convert keys, which are pressed in Gazebo's window, to velocity commands."""
-WITHOUT_EFFECT = DISPLAY_ONLY | KEYS_OF_WINDOW
+SLEEPING = frozenset(
+    {
+        "disable_link_plugin",
+        "gazebo_disable_link_plugin",
+        "roboticsgroup_gazebo_disable_link_plugin",
+        "roboticsgroup_upatras_gazebo_disable_link_plugin",
+    }
+)
+"""Plugins that call ODE's ``dBodyDisable`` for a link at the start. ODE enables a body again that a
+joint or a contact connects to one that is enabled.
+"""
+WITHOUT_EFFECT = DISPLAY_ONLY | KEYS_OF_WINDOW | SLEEPING
 
 
 def without_effect(tag: PluginTag) -> Diagnostic:
-    """Returns the note about a plugin that only concerns Gazebo's window."""
-    reads_keys = short_name(tag.filename) in KEYS_OF_WINDOW
-    does = "reads keys from Gazebo's window" if reads_keys else "changes what Gazebo's window shows"
+    """Returns the note about a plugin that only concerns Gazebo's window, or has no lasting effect
+    there.
+    """
+    name = short_name(tag.filename)
+    reads_keys = name in KEYS_OF_WINDOW
+    does = "changes what Gazebo's window shows"
+    if reads_keys:
+        does = "reads keys from Gazebo's window"
+    if name in SLEEPING:
+        does = "disables a link until a joint or a contact of the link moves it"
     return devices.PLUGIN_UNKNOWN.diagnostic(
         f'plugin "{tag.filename}" only {does}, so it has no effect',
         origin=tag.origin,
