@@ -206,6 +206,21 @@ def selected(folder, *, included=False):
     return path
 
 
+@pytest.mark.parametrize("name", ["arm", "my arm"])
+def test_a_macro_call_that_an_argument_selects_is_a_note_in_any_folder(tmp_path, name):
+    folder = tmp_path / name
+    folder.mkdir()
+    path = selected(folder)
+    start, end = '<xacro:unless value="$(arg sim)">', "</xacro:unless>"
+    head, rest = path.read_text().split(start)
+    real, tail = rest.split(end)
+    # The lines of the definition are not in the condition.
+    macro = f'<xacro:macro name="real">\n{real}\n</xacro:macro>'
+    path.write_text(f"{head}\n{macro}\n{start}\n<xacro:real/>\n{end}\n{tail}")
+    (note,) = unloaded(path)
+    assert note.severity == "info"
+
+
 def launched(folder, argument):
     """A launch file that starts Gazebo, with an argument of the xacro."""
     (folder / "package.xml").write_text("<package><name>arm</name></package>")

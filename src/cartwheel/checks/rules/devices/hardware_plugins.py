@@ -131,7 +131,7 @@ class _Choices:
         """
         places = {(origin.file, origin.line)}
         for call in origin.stack:
-            file, _, line = call.partition(" ")[0].rpartition(":")
+            file, _, line = call.rpartition(" ")[0].rpartition(":")
             if line.isdecimal():
                 places.add((file, int(line)))
         if not places.isdisjoint(self._places):
