@@ -5,9 +5,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.coded import named, placed, raises
+from tests.coded import coded, named, placed, raises
 
-from cartwheel.codes import files
+from cartwheel.codes import files, tags
 from cartwheel.description import load, load_robot, load_text, load_world
 from cartwheel.description.files.named_files import find_description, shipped_descriptions
 from cartwheel.description.files.package_folders import share
@@ -251,3 +251,37 @@ def test_an_unknown_world_lists_the_worlds(folder):
     with raises(files.FILE_MISSING) as caught:
         load_world("nowhere/zzzzz.world")
     assert "Bundled" not in (caught.value.hint or "")
+
+
+LEFT = '<xacro:bracket name="front"/>'
+BOX = '<link name="base"/>'
+
+
+def output(folder, name, content):
+    path = folder / name
+    path.write_text(
+        f'<robot name="box" xmlns:xacro="http://www.ros.org/wiki/xacro">{content}</robot>'
+    )
+    return path
+
+
+def test_calls_that_xacro_left_in_its_output_are_ignored(tmp_path):
+    """As by urdfdom and Gazebo: xacro before Jade left calls of unknown macros as they are."""
+    made = load_robot(output(tmp_path, "box.urdf", BOX + LEFT))
+    assert [each.name for each in made.links] == ["base"]
+    (found,) = coded(made.diagnostics, tags.TAG_IGNORED)
+    assert found.values["tag"] == "xacro:bracket"
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("box.urdf.xacro", BOX + LEFT),
+        ("box.xacro.urdf", BOX + LEFT),
+        ("box.urdf", BOX + LEFT + '<xacro:property name="a" value="1"/>'),
+        ("box.urdf", BOX.replace("base", "${name}") + LEFT),
+    ],
+)
+def test_files_for_xacro_must_define_their_macros(tmp_path, name, content):
+    with raises(files.XACRO_NAME_UNKNOWN):
+        load_robot(output(tmp_path, name, content))

@@ -10,6 +10,14 @@ from cartwheel.description.model import Element
 from cartwheel.errors import Code, DescriptionError, Diagnostic, Origin, Value
 from cartwheel.geometry import Pose, Vec3
 
+_XACRO_TAGS = frozenset(
+    {
+        "arg", "attribute", "block", "call", "element", "else", "eval", "if", "include",
+        "insert_block", "macro", "property", "unless",
+    }
+)  # fmt: skip
+"""The elements of xacro itself, as opposed to calls of macros."""
+
 
 class Node:
     """An element with its contents and location, which records the parts that were read.
@@ -341,13 +349,18 @@ def needs_xacro(root: Node) -> bool:
     Only xacro expands ``$(find …)``, so launch files also use it for URDFs with that expression. In
     the ``<uri>`` of an SDF, it is resolved like any other file: a missing file only affects one
     model.
+
+    A ``.urdf`` without expressions, in which only calls of macros are left that it neither defines
+    nor includes, is the output of an old xacro, which left unknown macros as they are. ROS and
+    Gazebo ignore these elements.
     """
     declared = "xmlns:xacro" in root.attributes
+    plain = _is_output(root)
     stack = [root]
     while stack:
         node = stack.pop()
         stack.extend(node.children)
-        if node.tag.startswith("xacro:"):
+        if node.tag.startswith("xacro:") and not plain:
             return True
         words = (*node.attributes.values(), node.text)
         if declared and any("${" in word or "$(" in word for word in words):
@@ -356,3 +369,20 @@ def needs_xacro(root: Node) -> bool:
         if not left and any("$(find " in word for word in words):
             return True
     return False
+
+
+def _is_output(root: Node) -> bool:
+    """Whether xacro has already expanded a URDF, so that only calls of unknown macros are left."""
+    file = root.origin.file.lower()
+    if root.tag != "robot" or not file.endswith(".urdf") or file.endswith(".xacro.urdf"):
+        return False
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        stack.extend(node.children)
+        prefix, _, name = node.tag.rpartition(":")
+        if prefix == "xacro" and name in _XACRO_TAGS:
+            return False
+        if any("${" in word or "$(" in word for word in (*node.attributes.values(), node.text)):
+            return False
+    return True

@@ -157,6 +157,13 @@ def _ignored(
 
 def _foreign(name: str, origin: Origin) -> Diagnostic:
     """Names with a prefix are left to other programs, as SDF specifies."""
+    if name.startswith("xacro:"):
+        return codes.TAG_IGNORED.diagnostic(
+            f"<{name}> is ignored: the file does not define this macro, and Gazebo runs no xacro",
+            origin=origin,
+            hint="Define or include the macro in a .xacro file, or delete the element.",
+            values={"tag": name, "meant": ""},
+        )
     return codes.NOT_SIMULATED.diagnostic(
         f"{name} has no effect: names with a prefix are reserved for other programs",
         origin=origin,

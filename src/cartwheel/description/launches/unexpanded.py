@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from cartwheel.codes.files import DESCRIPTION_NOT_EXPANDED
+from cartwheel.description.elements.xml import needs_xacro, parse
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.launch_use import LaunchUse
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic
 
 _XACRO = re.compile(r"<xacro:|\$\{")
 
@@ -17,12 +18,18 @@ _XACRO = re.compile(r"<xacro:|\$\{")
 def needs_expansion(description: Path) -> bool:
     """Whether a file contains xacro elements or expressions, outside of comments."""
     try:
-        first, *rest = read_regular_text(description).split("<!--")
+        text = read_regular_text(description)
     except OSError:
         return False
-    return any(
+    first, *rest = text.split("<!--")
+    if not any(
         _XACRO.search(each) for each in (first, *(each.partition("-->")[2] for each in rest))
-    )
+    ):
+        return False
+    try:
+        return needs_xacro(parse(text, str(description)))
+    except CartwheelError:
+        return True
 
 
 def unexpanded(description: Path, launches: Sequence[LaunchUse]) -> Iterator[Diagnostic]:
