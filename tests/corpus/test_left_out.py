@@ -6,7 +6,7 @@ from tests.corpus.carts import cart, controlled, plugin, written
 from cartwheel.codes.robot import DRIVE_JOINT_UNKNOWN, WHEEL_SEPARATION_MISMATCH
 from cartwheel.codes.running import PLUGIN_LEFT_OUT
 from cartwheel.corpus import try_robot
-from cartwheel.corpus.drive_causes import drives_on
+from cartwheel.corpus.drive_topics import drives_on
 from cartwheel.description import load_robot
 
 LOST = plugin().replace("left_joint", "no_such_joint")

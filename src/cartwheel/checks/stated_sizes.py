@@ -61,11 +61,18 @@ class Stated:
     write: Callable[[str], str]
     """Formats a number as replacement text."""
     place: Place
+    controller: str = ""
+    """The name of the controller that states it; empty if it is a plugin."""
 
     @property
     def used(self) -> float:
         """The value with which the controller computes, m."""
         return self.value * self.factor
+
+    @property
+    def owner(self) -> dict[str, str]:
+        """The controller that states it, as a value of diagnostics; empty if it is a plugin."""
+        return {"controller": self.controller} if self.controller else {}
 
     def steered_by(self, other: Stated) -> bool:
         """Whether one of the wheels is mounted on a steering joint, from which `other` measures the
@@ -306,6 +313,7 @@ def _of_controller(
             mark=written.text,
             write=written.replaced,
             place="line",
+            controller=controller.name,
         )
         if value is not None:
             yield one
@@ -347,6 +355,7 @@ def size_mismatch(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
             "joint": one.first[0],
             "stated": one.used,
             "measured": real,
+            **one.owner,
         },
         origin=one.origin,
         instead=one.write(nodes.short(round(real / one.factor, 4))) if one.factor else "",

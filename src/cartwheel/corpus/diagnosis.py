@@ -12,11 +12,11 @@ from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, tags, world
 from cartwheel.corpus.drive_causes import (
     cause_of_drive,
-    drives_on,
     flywheel,
     ignored_torque,
     is_free,
 )
+from cartwheel.corpus.drive_topics import drives_on, without_other_sizes
 from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through, lost_wheel
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
 from cartwheel.corpus.missing_movers import (
@@ -320,6 +320,8 @@ def _explaining(
     """
     test, subject = failed
     hindered = failed in verdict.hindered
+    if test in BASES:
+        found = without_other_sizes(found, subject, description, verdict.controllers)
     return [
         each
         for each in found

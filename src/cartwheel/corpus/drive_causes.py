@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import replace
 
 from cartwheel.checks.rules.wheels.wheel_separation import compensation
 from cartwheel.codes import robot, running
 from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW, PLUGIN_PARAMETER_OBSOLETE
 from cartwheel.corpus.faults import most_severe
-from cartwheel.corpus.movers import managers, reports
-from cartwheel.description.model import PluginTag, RobotDescription
+from cartwheel.corpus.movers import reports
+from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.dialects.remappings import remap_rules
 from cartwheel.errors import Code, Diagnostic
 
 _AGREES = 0.15
@@ -28,16 +26,15 @@ _PULLED = 0.5
 """Largest part of the turn rate for which wheels that point to one side account."""
 _REVERSED = 0.5
 """Part of the speed from which a base moves the other way, rather than hardly."""
+_MOST = 0.5
+"""Largest part of an error, of the logarithm of the speed, that a wrong size leaves unexplained if
+it explains most of it."""
 _TOO_FAST = 0.05
 """Relative error from which a base is too fast."""
 _STUCK = 0.1
 """Predicted part of the turn rate up to which a robot may as well not turn at all."""
 _FLYWHEEL = 20.0
 """Ratio of a wheel's inertia to the largest that it can have, beyond which it may tip a robot."""
-_TOPIC = re.compile(r"^(?:(?:command|cmd)_?(?:vel_?)?(?:ros_?)?)?topic(?:_?name)?$", re.IGNORECASE)
-"""Names of the tags of drives with the topic of their commands."""
-_COMMANDS = "cmd_vel"
-"""The topic of a drive that states none."""
 _DRIVING = frozenset(
     {
         robot.DRIVE_JOINT_UNKNOWN,
@@ -187,11 +184,25 @@ def _cause(
     if 1.0 - _BRAKED < ratio < 1.0:
         # A caster may also brake a base that drives straight ahead.
         codes |= {robot.CASTER_FRICTION}
-    return most_severe(
+    unknown = most_severe(
         each
         for each in found
         if each.code in codes and not _only_measures(each) and (ratio < 0 or not _reverses(each))
     )
+    largest = _largest(factors, ratio)
+    driven_twice = any(each.code is running.JOINT_DRIVEN_TWICE for each in found)
+    return unknown if unknown is None or largest is None or driven_twice else largest
+
+
+def _largest(factors: Mapping[Code, tuple[Diagnostic, float]], ratio: float) -> Diagnostic | None:
+    """The wrong size that explains most of an error, so that anything else contributes less."""
+    sizes = [each for each in factors.values() if "stated" in each[0].values and each[1] > 0.0]
+    size = math.prod(factor for _, factor in sizes)
+    if not sizes or size == 1.0 or ratio <= 0.0:
+        return None
+    if abs(math.log(ratio / size)) > _MOST * abs(math.log(size)):
+        return None
+    return max(sizes, key=lambda pair: math.log(pair[1]) * math.log(size))[0]
 
 
 def _combined(factors: Mapping[Code, tuple[Diagnostic, float]], ratio: float) -> Diagnostic | None:
@@ -234,51 +245,6 @@ def _only_measures(each: Diagnostic) -> bool:
     return each.code is running.PLUGIN_LEFT_OUT and reports(
         short_name(str(each.values.get("plugin", "")))
     )
-
-
-def drives_on(
-    fault: Diagnostic, topic: str, description: RobotDescription, controllers: Sequence[str]
-) -> bool:
-    """Whether a plugin that does not drive would have received the commands on a topic.
-
-    Args:
-        fault: The finding that it was left out, or that one of its joints does not exist.
-        topic: The topic.
-        description: The robot.
-        controllers: Names of the robot's controllers, which have topics of their own.
-    """
-    *spaces, name = topic.strip("/").split("/")
-    if spaces and spaces[-1] in controllers:
-        return False
-    others = managers(description, jointless=True)
-    return any(
-        _is_about(fault, tag) and tag not in others and name in _names(tag)
-        for tag in description.plugins
-    )
-
-
-def _is_about(fault: Diagnostic, tag: PluginTag) -> bool:
-    """Whether a finding is about a plugin."""
-    values = fault.values
-    if fault.code is running.PLUGIN_LEFT_OUT:
-        return tag.filename == values.get("plugin")
-    return any(
-        each.tag == values.get("tag") and each.text.strip() == values.get("joint")
-        for each in tag.element.children
-    )
-
-
-def _names(tag: PluginTag) -> set[str]:
-    """The last parts of the names of the topics on which a drive may receive commands."""
-    return {each.strip("/").rpartition("/")[2] for each in _topics(tag)}
-
-
-def _topics(tag: PluginTag) -> Iterator[str]:
-    stated = [each.text.strip() for each in tag.element.children if _TOPIC.match(each.tag)]
-    yield from stated or [_COMMANDS]
-    for source, target in remap_rules(tag):
-        if source.rpartition("/")[2] == _COMMANDS:
-            yield target
 
 
 def _follows(ratio: float, expected: float) -> bool:

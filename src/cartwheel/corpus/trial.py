@@ -11,14 +11,13 @@ from cartwheel.api import Model, World
 from cartwheel.checks.checking import check
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, driving, motion
-from cartwheel.corpus.controlled import controlled_sides
 from cartwheel.corpus.diagnosis import faults, has_devices
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flying.flights import flights
 from cartwheel.corpus.flying.thrusters import bursts, thrusts
 from cartwheel.corpus.gains import too_weak, too_weak_to_turn, undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
-from cartwheel.corpus.listening import LISTENING, controllers_of, idle, listened
+from cartwheel.corpus.listening import LISTENING, controlled_sides, controllers_of, idle, listened
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.placing import HIGH, name_in, put, surroundings
 from cartwheel.corpus.poses import posed

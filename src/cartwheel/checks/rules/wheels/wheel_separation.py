@@ -141,6 +141,7 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
                 "measured": one.measured,
                 "fits": one.value / ratio,
                 "rolling": one.used / mean_between(one, beside=True),
+                **one.owner,
             },
             origin=one.origin,
             hint=compensation(one.value, one.factor, one.multiplier, ratio, scaled=one.measured),
