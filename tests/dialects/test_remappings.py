@@ -21,6 +21,8 @@ def argument(*words: str) -> str:
         (argument("--ros-args", "-p", "a:=1", "--", "~/out:=scan"), "/bot/scan"),
         (argument("cloud:~/out:=scan"), "/bot/scan"),
         ("<remapping>cloud:~/out:=scan</remapping>", "/bot/scan"),
+        ("<remapping>rostopic://~/out:=scan</remapping>", "/bot/scan"),
+        ("<remapping>cloud:rostopic://~/out:=scan</remapping>", "/bot/scan"),
         ("<remapping>~/out:=~/scan</remapping>", "/bot/cloud/scan"),
         (argument("__ns:=/other", "~/out:=scan"), "/other/scan"),
         # The first rule for a name counts, and arguments come first.

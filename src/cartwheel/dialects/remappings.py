@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 from cartwheel.description.model import Element, PluginTag
 
-_RULE = re.compile(r"(?:(?P<node>\w+):)?(?:ros(?:topic|service)://)?(?P<old>[^:=]+):=(?P<new>\S+)")
+_RULE = re.compile(
+    r"(?:(?P<node>\w+):(?!//))?(?:ros(?:topic|service)://)?(?P<old>[^:=]+):=(?P<new>\S+)"
+)
 _REMAP = ("-r", "--remap")
 
 

@@ -23,7 +23,7 @@ _MODEL = ("model.config", "model.sdf")
 def package_uri_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
     if subject.is_urdf:
         return
-    # Gazebo reads the plugins of all models that a file includes.
+    # A plugin of any model in the file shows for which Gazebo it is.
     plugins = [node for node in nodes.walk(subject.root) if node.tag == "plugin"]
     names = [nodes.text_of(node, "filename") for node in plugins]
     if any(_GZ.search(name) for name in names):
