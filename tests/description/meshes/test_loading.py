@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from tests.coded import raises
 
 from cartwheel.codes.files import FILE_MISSING, MESH_UNREADABLE
@@ -276,6 +277,30 @@ def test_gltf_finds_its_buffer_beside_it(tmp_path):
     (tmp_path / "t.bin").write_bytes(binary)
     (part,) = load_mesh(write(tmp_path, "t.gltf", json.dumps(document)))
     assert part.vertices.max(axis=0).tolist() == [2, 7, 0]
+
+
+def test_the_image_of_a_gltf_is_the_file_beside_it(tmp_path):
+    """It is not encoded again, which takes a second for the usual sizes."""
+    document, binary = triangle_gltf()
+    places = np.array([[0, 0], [1, 0], [0, 1]], dtype="<f4").tobytes()
+    document["buffers"] = [{"byteLength": len(binary + places), "uri": "t.bin"}]
+    document["bufferViews"].append(
+        {"buffer": 0, "byteOffset": len(binary), "byteLength": len(places)}
+    )
+    document["accessors"].append(
+        {"bufferView": len(document["bufferViews"]) - 1, "componentType": 5126, "count": 3,
+         "type": "VEC2"}
+    )  # fmt: skip
+    attributes = document["meshes"][0]["primitives"][0]["attributes"]
+    attributes["TEXCOORD_0"] = len(document["accessors"]) - 1
+    document["images"] = [{"uri": "t.jpg"}]
+    document["textures"] = [{"source": 0}]
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+    image = tmp_path / "t.jpg"
+    Image.new("RGB", (8, 8), (200, 30, 10)).save(image)
+    (tmp_path / "t.bin").write_bytes(binary + places)
+    (part,) = load_mesh(write(tmp_path, "t.gltf", json.dumps(document)))
+    assert part.texture == image.read_bytes()
 
 
 UNUSABLE = [

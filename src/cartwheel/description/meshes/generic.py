@@ -97,6 +97,14 @@ def _look(visual: Any) -> tuple[Rgba | None, bytes | None]:
     if image.format is not None and image.format not in FORMATS:
         return rgba, None
     check_size(image, "in the mesh")
+    return rgba, _content(image)
+
+
+def _content(image: Any) -> bytes:
+    """The file of an image: as it is stored, or compressed if trimesh has changed the image."""
+    stored = getattr(image, "fp", None)  # of an image that is opened, but not decoded
+    if isinstance(stored, io.BytesIO):
+        return stored.getvalue()
     stream = io.BytesIO()
-    image.save(stream, format="PNG")
-    return rgba, stream.getvalue()
+    image.save(stream, format="PNG", compress_level=1)
+    return stream.getvalue()
