@@ -67,7 +67,7 @@ def test_gains_that_let_legs_give_way_are_the_reason_why_a_robot_sinks(tmp_path,
     verdict = tried(tmp_path, quadruped(rest, bend=0.5), controllers)
     assert (verdict.stand.state == "yes") == stands
     found = [each.reason.code for each in verdict.faults if each.test == "stand"]
-    assert found == [] if stands else [CONTROLLER_GAIN_TOO_LOW]
+    assert found == ([] if stands else [CONTROLLER_GAIN_TOO_LOW])
     if not stands:
         (reason,) = (each.reason for each in verdict.faults if each.test == "stand")
         assert reason.values["sagged"] > 0.05
