@@ -3,7 +3,13 @@
 import pytest
 from tests.corpus.carts import cart, plugin, written
 
-from cartwheel.codes.robot import CASTER_FRICTION, WHEEL_SEPARATION_MISMATCH
+from cartwheel.codes.robot import (
+    CASTER_FRICTION,
+    SKID_STEERING,
+    STEERING_REVERSED,
+    WHEEL_SEPARATION_MISMATCH,
+    WHEELS_SWAPPED,
+)
 from cartwheel.corpus import try_robot
 from cartwheel.corpus.drive_causes import cause_of_drive
 
@@ -59,3 +65,32 @@ LOOSE = CASTER_FRICTION.diagnostic("", values={"ratio": None})
 )
 def test_a_size_and_a_brake_are_combined(found, ratio, reason):
     assert cause_of_drive(found, ratio, turning=True) is reason
+
+
+SWAPPED = WHEELS_SWAPPED.diagnostic("")
+REVERSED = STEERING_REVERSED.diagnostic("")
+SLIDING = SKID_STEERING.diagnostic("", values={"ratio": 0.1})
+
+
+@pytest.mark.parametrize(
+    ("found", "ratio", "reason"),
+    [
+        ([SLIDING, SWAPPED], -0.06, SWAPPED),
+        ([CASTER, SWAPPED], -0.3, SWAPPED),
+        ([CASTER, SEPARATION, REVERSED], -0.9, REVERSED),
+        # It does not turn at all, as wheels that slide.
+        ([SLIDING, SWAPPED], -0.01, SLIDING),
+        ([SLIDING], 0.06, SLIDING),
+    ],
+)
+def test_only_what_reverses_a_turn_explains_one_in_the_wrong_direction(found, ratio, reason):
+    cause = cause_of_drive(found, ratio, turning=True)
+    assert cause is not None
+    assert cause.code is reason.code
+
+
+def test_swapped_wheels_and_a_caster_that_is_dragged(tmp_path):
+    swapped = plugin().replace(">left_", ">?").replace(">right_", ">left_").replace(">?", ">right_")
+    verdict = try_robot(written(tmp_path, dragging(0.5), swapped), standing=1.0)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("turn", WHEELS_SWAPPED, "file")

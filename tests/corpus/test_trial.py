@@ -568,7 +568,9 @@ def test_a_missing_mesh_above_a_robot_is_no_reason_why_it_tips(tried, height, co
     assert (fault.test, fault.code) == ("stand", code)
 
 
-LEG = """<link name="leg"><collision><origin xyz="0 0 -0.3"/><geometry><box size="0.4 0.4 0.05"/>
+LEG = """<link name="leg"><inertial><mass value="4"/>
+  <inertia ixx="0.05" iyy="0.05" izz="0.1"/></inertial>
+  <collision><origin xyz="0 0 -0.3"/><geometry><box size="0.4 0.4 0.05"/>
   </geometry></collision></link>
 <joint name="hip" type="revolute"><parent link="base"/><child link="leg"/><origin xyz="0 0 -0.05"/>
   <axis xyz="0 1 0"/><limit lower="-1.5" upper="1.5" effort="9" velocity="3"/></joint>

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running, tags, world
 from cartwheel.corpus.drive_causes import (
     cause_of_drive,
@@ -17,9 +15,18 @@ from cartwheel.corpus.drive_causes import (
     is_free,
 )
 from cartwheel.corpus.drive_topics import drives_on, without_other_sizes
-from cartwheel.corpus.fall_causes import LEFT_OUT, cause_of_fall, falls_through, lost_wheel
+from cartwheel.corpus.fall_causes import (
+    LEFT_OUT,
+    cause_of_fall,
+    falls_through,
+    has_devices,
+    lost_wheel,
+    need_not_stand,
+)
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
 from cartwheel.corpus.missing_movers import (
+    held_bases,
+    is_started,
     missing_movers,
     unmanaged_hardware,
     unmanaged_transmissions,
@@ -27,19 +34,14 @@ from cartwheel.corpus.missing_movers import (
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.model import RobotDescription
-from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Diagnostic
 
-_ROOT = re.compile(
-    r"(?>\s+|<!--.*?-->|<\?.*?\?>|<!DOCTYPE(?:[^<>\[]|\[[^\]]*\])*+>)*+<([\w:]+)", re.DOTALL
-)
-"""The first element of an XML text. Possessive: otherwise there would be two ways to separate
-consecutive comments.
-"""
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
 """Lengths in other units, with which shapes are inside each other or kilometres long."""
+_UNLIMITED = frozenset({robot.LIMIT_MISSING})
+"""For a URDF, neither ROS nor Gazebo loads the robot."""
 _NOT_EXPANDED = frozenset({files.DESCRIPTION_NOT_EXPANDED})
 _WITHOUT_WHEELS = frozenset(
     {
@@ -113,17 +115,10 @@ def _faults(
         yield Fault(test="simulate" if verdict.loaded else "load", reason=reason)
     if not verdict.loaded:
         return
-    if (unloaded := _unloaded(verdict, description)) is not None:
-        yield Fault(test="load", reason=unloaded)
-    if (twice := _material_twice(description)) is not None:
-        yield Fault(test="load", reason=twice)
-    if (plain := coded(verdict.observed, _NOT_EXPANDED)) is not None:
-        yield Fault(test="load", reason=plain)
-    stopped = _stopped(description)
-    if stopped is not None:
-        yield Fault(test="load", subject=str(stopped.values["file"]), reason=stopped)
+    stopped = _stopping_include(description)
+    yield from _load_faults(verdict, description, stopped)
     # Two plugins of a kind are one fault.
-    held = bool([*_held_bases(verdict, description, findings)])
+    held = bool([*held_bases(verdict, description, findings)])
     missing = {
         fault.subject: fault
         for fault in reversed([*missing_movers(verdict, description, held=held)])
@@ -142,23 +137,26 @@ def _faults(
     yield from _measured(verdict, description, findings, None if moved else idle)
 
 
-def has_devices(description: RobotDescription) -> bool:
-    """Whether a description contains plugins or sensors for Gazebo."""
-    return bool(description.plugins) or any(link.sensors for link in description.links)
+def _load_faults(
+    verdict: Verdict, description: RobotDescription, stopped: Diagnostic | None
+) -> Iterator[Fault]:
+    """What is not loaded of a robot that Cartwheel loads.
 
-
-def _need_not_stand(verdict: Verdict, description: RobotDescription) -> bool:
-    """Whether a description is for other programs, such as RViz or MuJoCo: a URDF without plugins
-    and sensors that no launch file starts in Gazebo.
+    `stopped` is what `_stopping_include` returns.
     """
-    if verdict.movers or verdict.drives or has_devices(description):
-        return False
-    if coded(description.diagnostics, LEFT_OUT) is not None:
-        # The missing part may contain some.
-        return False
-    started = verdict.launch is not None and verdict.launch.simulated
-    root = _ROOT.match(description.text)
-    return root is not None and root[1] == "robot" and not started
+    reasons = (
+        _unloaded(verdict, description),
+        coded(description.diagnostics, _UNLIMITED),
+        _material_twice(description),
+        coded(verdict.observed, _NOT_EXPANDED),
+    )
+    for reason in reasons:
+        if reason is not None:
+            yield Fault(test="load", reason=reason)
+    for joint, dropped in _dropped(verdict, description):
+        yield Fault(test="load", subject=joint, reason=dropped)
+    if stopped is not None:
+        yield Fault(test="load", subject=str(stopped.values["file"]), reason=stopped)
 
 
 def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | None:
@@ -171,7 +169,7 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
     started = verdict.launch is not None and verdict.launch.simulated
     shapes = any(link.collisions for link in description.links)
     falls = verdict.stand is not None and falls_through(verdict.stand) and not shapes
-    falls = falls and not _need_not_stand(verdict, description)
+    falls = falls and not need_not_stand(verdict, description)
     if not (verdict.movers or has_devices(description) or started or falls):
         return None
     if coded(description.diagnostics, LEFT_OUT) is not None:
@@ -187,6 +185,28 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
     return None
 
 
+def _dropped(verdict: Verdict, description: RobotDescription) -> Iterator[tuple[str, Diagnostic]]:
+    """A driven joint that does not exist in Gazebo, because the link that it moves, or one that
+    carries it, has no mass.
+    """
+    if coded(description.diagnostics, LEFT_OUT) is not None:
+        # The missing part may contain the mass.
+        return
+    inbound = {joint.child: joint for joint in description.joints}
+    for each in description.diagnostics:
+        links = each.values.get("links", ())
+        if each.code is not robot.INERTIA_MISSING or not isinstance(links, tuple):
+            continue
+        lost = {str(name) for name in links} & inbound.keys()
+        for joint in description.joints:
+            carried = joint
+            while carried.child not in lost and carried.parent in inbound:
+                carried = inbound[carried.parent]
+            if joint.name in verdict.driven and carried.child in lost:
+                yield joint.name, each
+                return
+
+
 def _material_twice(description: RobotDescription) -> Diagnostic | None:
     """The second definition of a material, for which neither ROS nor Gazebo loads a URDF."""
     return next(
@@ -199,7 +219,7 @@ def _material_twice(description: RobotDescription) -> Diagnostic | None:
     )
 
 
-def _stopped(description: RobotDescription) -> Diagnostic | None:
+def _stopping_include(description: RobotDescription) -> Diagnostic | None:
     """An include that stops xacro because its package does not contain the file.
 
     Unlike a package, the file is not only absent here, unless the package's build makes it.
@@ -241,7 +261,7 @@ def _measured(
     said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
     wheel = lost_wheel(said, description, verdict.driven) if verdict.drives else None
-    if verdict.stand is not None and not (verdict.stands or _need_not_stand(verdict, description)):
+    if verdict.stand is not None and not (verdict.stands or need_not_stand(verdict, description)):
         followed = any(drive.follows for drive in verdict.drives)
         everything = [
             each
@@ -253,7 +273,7 @@ def _measured(
     for topic in verdict.silent:
         reason = coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
-    for subject, reason in _held_bases(verdict, description, findings):
+    for subject, reason in held_bases(verdict, description, findings):
         yield Fault(test="drive", subject=subject, reason=reason)
 
     def explaining(test: Test, subject: str) -> list[Diagnostic]:
@@ -291,7 +311,7 @@ def _measured(
             reason = cause_of_drive(found, 1.0 + drive.error_sideways, sideways=True)
             yield Fault(test="sideways", subject=drive.topic, reason=reason or unsteady)
     for reach in verdict.reaches:
-        if not reach.arrived and _is_started(reach.controller, verdict):
+        if not reach.arrived and is_started(reach.controller, verdict):
             # A robot that fell may lie on its joints.
             names = reach.joint, children.get(reach.joint, "")
             found = explaining("reach", reach.joint)
@@ -332,34 +352,6 @@ def _explaining(
             or drives_on(each, subject, description, verdict.controllers)
         )
     ]
-
-
-def _held_bases(
-    verdict: Verdict,
-    description: RobotDescription,
-    findings: Callable[[], Sequence[Diagnostic]],
-) -> Iterator[tuple[str, Diagnostic]]:
-    """Plugins and controllers that cannot drive a robot, because it is fixed to the world."""
-    if verdict.stand is None or not verdict.stand.fixed:
-        return
-    if not verdict.controllers and not Robot(description, None).drives:
-        return
-    for each in findings():
-        if each.code is robot.BASE_FIXED:
-            controller = str(each.values.get("controller", ""))
-            if not controller:
-                yield short_name(str(each.values["plugin"])), each
-            elif controller in verdict.controllers and _is_started(controller, verdict):
-                yield controller, each
-
-
-def _is_started(controller: str, verdict: Verdict) -> bool:
-    """Whether ROS runs a controller as well: a file may list more than a launch file starts."""
-    return (
-        not verdict.spawned
-        or controller not in verdict.controllers
-        or (controller in verdict.spawned)
-    )
 
 
 def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:

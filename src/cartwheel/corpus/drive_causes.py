@@ -56,6 +56,8 @@ _DRIVING = frozenset(
     }
 )
 """Mistakes that change a base's velocity by an unknown factor."""
+_SLOWING = frozenset({robot.SKID_STEERING, robot.CASTER_FRICTION})
+"""Parts that slide in a turn."""
 _SIDEWAYS = _DRIVING | {running.WHEELS_WITHOUT_ROLLERS}
 _TURNING = _DRIVING | {robot.CASTER_FRICTION, running.WHEELS_WITHOUT_ROLLERS}
 
@@ -151,7 +153,12 @@ def _cause(
         # Fewer or other wheels than predicted carry the robot, or the friction depends on the
         # direction.
         return skids
-    if skids is not None and slowest <= _STUCK and abs(ratio) < max(slowest, _DIFFERS):
+    if turning and ratio < -_DIFFERS and any(each.code in _SLOWING for each in found):
+        # What slides slows the turn down, but does not change its direction.
+        reversing = [each for each, factor in factors.values() if factor < 0.0]
+        if len(reversing) == 1:
+            return reversing[0]
+    if skids is not None and slowest <= _STUCK and -_DIFFERS <= ratio < max(slowest, _DIFFERS):
         # The predicted part may be exactly 0.
         return skids
     product = math.prod(factor for _, factor in factors.values())

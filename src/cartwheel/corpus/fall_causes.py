@@ -10,7 +10,7 @@ from cartwheel.checks.wheels import wheel_axis, wheel_links
 from cartwheel.codes import devices, files, robot
 from cartwheel.corpus.faults import coded, most_severe
 from cartwheel.corpus.movers import may_move
-from cartwheel.corpus.verdict import Stand
+from cartwheel.corpus.verdict import Stand, Verdict
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.errors import Diagnostic
 
@@ -59,6 +59,12 @@ _PART = 0.5
 _FALLEN = 1.0
 """m, or robot sizes if it is longer than 1 m, by which only a robot sinks that falls through the
 ground."""
+_ROOT = re.compile(
+    r"(?>\s+|<!--.*?-->|<\?.*?\?>|<!DOCTYPE(?:[^<>\[]|\[[^\]]*\])*+>)*+<([\w:]+)", re.DOTALL
+)
+"""The first element of an XML text. Possessive: otherwise there would be two ways to separate
+consecutive comments.
+"""
 
 
 def cause_of_fall(
@@ -293,3 +299,22 @@ def _is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
         and not each.values.get("parent")
         and each.values.get("link") not in held
     )
+
+
+def has_devices(description: RobotDescription) -> bool:
+    """Whether a description contains plugins or sensors for Gazebo."""
+    return bool(description.plugins) or any(link.sensors for link in description.links)
+
+
+def need_not_stand(verdict: Verdict, description: RobotDescription) -> bool:
+    """Whether a description is for other programs, such as RViz or MuJoCo: a URDF without plugins
+    and sensors that no launch file starts in Gazebo.
+    """
+    if verdict.movers or verdict.drives or has_devices(description):
+        return False
+    if coded(description.diagnostics, LEFT_OUT) is not None:
+        # The missing part may contain some.
+        return False
+    started = verdict.launch is not None and verdict.launch.simulated
+    root = _ROOT.match(description.text)
+    return root is not None and root[1] == "robot" and not started

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from cartwheel.checks.controller_claims import uncommanded
-from cartwheel.codes import devices, files, running
+from cartwheel.checks.robot import Robot
+from cartwheel.codes import devices, files, robot, running
 from cartwheel.corpus.fall_causes import LEFT_OUT
 from cartwheel.corpus.faults import Fault, coded, most_severe
 from cartwheel.corpus.movers import (
@@ -282,3 +283,31 @@ def _broadcasts(refused: Diagnostic) -> bool:
 def _concerns(each: Diagnostic, tag: PluginTag) -> bool:
     """Whether a diagnostic may be about a plugin: it is not about another one."""
     return each.values.get("plugin", tag.filename) == tag.filename
+
+
+def held_bases(
+    verdict: Verdict,
+    description: RobotDescription,
+    findings: Callable[[], Sequence[Diagnostic]],
+) -> Iterator[tuple[str, Diagnostic]]:
+    """Plugins and controllers that cannot drive a robot, because it is fixed to the world."""
+    if verdict.stand is None or not verdict.stand.fixed:
+        return
+    if not verdict.controllers and not Robot(description, None).drives:
+        return
+    for each in findings():
+        if each.code is robot.BASE_FIXED:
+            controller = str(each.values.get("controller", ""))
+            if not controller:
+                yield short_name(str(each.values["plugin"])), each
+            elif controller in verdict.controllers and is_started(controller, verdict):
+                yield controller, each
+
+
+def is_started(controller: str, verdict: Verdict) -> bool:
+    """Whether ROS runs a controller as well: a file may list more than a launch file starts."""
+    return (
+        not verdict.spawned
+        or controller not in verdict.controllers
+        or (controller in verdict.spawned)
+    )

@@ -11,7 +11,8 @@ from cartwheel.api import Model, World
 from cartwheel.checks.checking import check
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, driving, motion
-from cartwheel.corpus.diagnosis import faults, has_devices
+from cartwheel.corpus.diagnosis import faults
+from cartwheel.corpus.fall_causes import has_devices
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flying.flights import flights
 from cartwheel.corpus.flying.thrusters import bursts, thrusts

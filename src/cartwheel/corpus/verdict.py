@@ -295,9 +295,12 @@ class Verdict:
 
     @property
     def moves(self) -> bool:
-        """Whether everything that should move was moved by commands, and moved as commanded."""
+        """Whether everything that should move was moved by commands, and moved as commanded.
+
+        A robot that only Cartwheel loads does not.
+        """
         return bool(self.drives or self.reaches or self.spins or self.flights) and not any(
-            fault.test in MOTION for fault in self.faults
+            fault.test in MOTION or fault.test == "load" for fault in self.faults
         )
 
     @property

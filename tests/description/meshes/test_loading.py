@@ -8,6 +8,7 @@ import os
 import struct
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -165,6 +166,17 @@ def test_obj_with_materials(tmp_path):
     assert glass.texture is None
     assert sorted(map(tuple, glass.vertices.tolist())) == [(0, 0, 0), (0, 0, 1), (1, 0, 0)]
     assert mesh_notes(mesh) == ()
+
+
+@pytest.mark.parametrize("key", ["o", "g"])
+def test_obj_objects_and_groups_are_submeshes(tmp_path, key):
+    points = "".join(f"v {x} {y} {z}\n" for x, y, z in TETRA)
+    text = f"{points}usemtl red\n{key} left wheel\nf 1 2 3\n{key} right\nf 1 2 4\nf 1 3 4\n"
+    mesh = write(tmp_path, "t.obj", text)
+    parts = load_mesh(mesh)
+    assert [(part.name, len(part.faces)) for part in parts] == [("left wheel", 1), ("right", 2)]
+    (part,) = load_mesh(replace(mesh, submesh="right"))
+    assert len(part.faces) == 2
 
 
 def test_obj_without_its_library_says_so(tmp_path):

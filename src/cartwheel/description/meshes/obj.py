@@ -21,7 +21,7 @@ _LINES = re.compile(rb"(?P<key>v[tn]?|f) [^\n]*+\n(?:(?P=key) [^\n]*+\n)*+|[^\n]
 """A line, or several lines with the same key."""
 _KEYS = b"vtn"
 _TO_SPACES = bytes.maketrans(b"f/", b"  ")
-_IGNORED = frozenset({"s", "g", "l", "p", "vp", "#", "mg"})
+_IGNORED = frozenset({"s", "l", "p", "vp", "#", "mg"})
 
 
 @dataclass(slots=True)
@@ -32,7 +32,7 @@ class _Material:
 
 @dataclass(slots=True)
 class _Group:
-    """Faces with the same object and material, as one or several lines with absolute indices."""
+    """Faces with the same object or group, and material, as lines with absolute indices."""
 
     name: str
     material: str
@@ -53,7 +53,7 @@ class _Table:
 
 
 def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
-    """One submesh for each object and material.
+    """One submesh for each object or group, and material.
 
     Args:
         path: The file; its libraries and images are relative to it.
@@ -78,7 +78,8 @@ def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
         elif key == b"f":
             group = groups.setdefault((name, material), _Group(name, material))
             group.faces.append(_absolute(lines, tables) if b"-" in lines else lines)
-        elif key == b"o":
+        elif key in (b"o", b"g"):
+            # Gazebo starts a submesh at both.
             name = rest.strip().decode(errors="replace")
         elif key == b"usemtl":
             material = rest.strip().decode(errors="replace")

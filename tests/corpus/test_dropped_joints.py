@@ -1,0 +1,75 @@
+"""Joints with which ROS or Gazebo does not load a robot, or that Gazebo drops."""
+
+import re
+
+import pytest
+from tests.corpus.carts import cart, plugin, written
+
+from cartwheel.codes.robot import INERTIA_MISSING, LIMIT_MISSING
+from cartwheel.corpus import try_robot
+
+MASS = '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'
+LINK = '<link name="{name}">{mass}</link>'
+JOINT = (
+    '<joint name="{name}_joint" type="{kind}"><parent link="{parent}"/><child link="{name}"/>'
+    '<axis xyz="0 0 1"/>{limit}</joint>'
+)
+LIMIT = '<limit lower="-1" upper="1" effort="10" velocity="1"/>'
+SERVO = (
+    '<gazebo><plugin name="s" filename="gz-sim-joint-position-controller-system">'
+    "<joint_name>{name}_joint</joint_name></plugin></gazebo>"
+)
+
+
+def arm(folder, limit=LIMIT, kind="revolute", upper=MASS, servo="hand"):
+    """A base that is fixed to the world, an upper arm, and a hand."""
+    parts = [LINK.format(name="world", mass=""), LINK.format(name="base", mass=MASS)]
+    parts.append(JOINT.format(name="base", kind="fixed", parent="world", limit=""))
+    parts.append(LINK.format(name="upper", mass=upper))
+    parts.append(JOINT.format(name="upper", kind=kind, parent="base", limit=limit))
+    parts.append(LINK.format(name="hand", mass=MASS))
+    parts.append(JOINT.format(name="hand", kind="revolute", parent="upper", limit=LIMIT))
+    if servo:
+        parts.append(SERVO.format(name=servo))
+    path = folder / "robot.urdf"
+    path.write_text(f'<robot name="robot">{"".join(parts)}</robot>')
+    return path
+
+
+def faults(verdict):
+    return [(each.test, each.code, each.source) for each in verdict.faults]
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
+@pytest.mark.parametrize("servo", ["hand", ""])
+def test_ros_loads_no_robot_with_a_joint_without_limit(tmp_path, kind, servo):
+    verdict = try_robot(arm(tmp_path, limit="", kind=kind, servo=servo), standing=1.0)
+    assert faults(verdict) == [("load", LIMIT_MISSING, "file")]
+    assert not verdict.moves
+
+
+@pytest.mark.parametrize("kind", ["continuous", "fixed", "floating"])
+def test_other_joints_need_no_limit(tmp_path, kind):
+    verdict = try_robot(arm(tmp_path, limit="", kind=kind, servo=""), standing=1.0)
+    assert LIMIT_MISSING not in {each.code for each in verdict.faults}
+
+
+@pytest.mark.parametrize("servo", ["hand", "upper"])
+def test_gazebo_drops_a_driven_joint_with_the_link_that_carries_it(tmp_path, servo):
+    verdict = try_robot(arm(tmp_path, upper="", servo=servo), standing=1.0)
+    (fault,) = [each for each in verdict.faults if each.test == "load"]
+    assert (fault.subject, fault.code) == (f"{servo}_joint", INERTIA_MISSING)
+    assert verdict.outcome == "file"
+    assert verdict.should_move
+    assert not verdict.moves
+
+
+def test_a_link_without_mass_that_nothing_drives_is_no_fault(tmp_path):
+    assert not try_robot(arm(tmp_path, upper="", servo=""), standing=1.0).faults
+
+
+def test_gazebo_drops_driven_wheels_without_mass(tmp_path):
+    body, wheels = cart().split('<link name="left">')
+    light = re.sub("<inertial>.*?</inertial>", "", '<link name="left">' + wheels)
+    verdict = try_robot(written(tmp_path, body + light, plugin()), standing=1.0)
+    assert ("load", INERTIA_MISSING, "file") in faults(verdict)
