@@ -50,6 +50,8 @@ def link(found) -> str:
         (BOTH, ("gazebo.launch.py",), "2 humble 3"),
         (BOTH, ("gazebo.launch", "gazebo.launch.py"), "2 humble 3"),
         ("", ("cart_launch.py", "config.yaml"), "2 humble 3"),
+        ("", ("launch.py", "launch_config.yaml"), "2 humble 3"),
+        ("", ("gazebo.launch", "launch_config.yaml", "move.py"), "1 noetic 3"),
     ],
 )
 def test_the_values_are_those_of_the_version_of_the_package(tmp_path, depend, launches, version):

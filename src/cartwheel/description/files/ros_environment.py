@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
@@ -22,7 +23,8 @@ _SET: Mapping[int, Mapping[str, str]] = {
 }
 """By the version of ROS. Of both, the last distribution with Gazebo Classic."""
 ROS_VARIABLES = frozenset(name for names in _SET.values() for name in names)
-_ROS2 = (".launch.py", ".launch.xml", ".launch.yaml", "_launch.py", "_launch.xml")
+_ROS2 = (".launch.xml", "_launch.xml", ".launch.yaml", "_launch.yaml")
+"""Ends of the names of launch files for ROS 2 that are not in Python."""
 _MOST = 500
 """Maximum number of launch files to look at."""
 
@@ -52,7 +54,7 @@ class RosEnvironment(Mapping[str, str]):
     def __getitem__(self, name: str) -> str:
         if name in self._variables or name not in ROS_VARIABLES:
             return self._variables[name]
-        version = self._known() or 2
+        version = self._known or 2
         value = _SET[version].get(name)
         if value is None:
             raise KeyError(name)
@@ -62,7 +64,7 @@ class RosEnvironment(Mapping[str, str]):
     def __contains__(self, name: object) -> bool:
         if name in self._variables or name not in ROS_VARIABLES:
             return name in self._variables
-        return name in _SET.get(self._known() or 0, {})
+        return name in _SET.get(self._known or 0, {})
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._variables)
@@ -70,6 +72,7 @@ class RosEnvironment(Mapping[str, str]):
     def __len__(self) -> int:
         return len(self._variables)
 
+    @cached_property
     def _known(self) -> Literal[1, 2] | None:
         if self._file is None:
             return None
@@ -90,14 +93,22 @@ def assumed(name: str, value: str, version: int, origin: Origin) -> Diagnostic:
 
 def _launched_by(file: Path) -> Literal[1, 2] | None:
     """The version of ROS of a launch file, or of all launch files in the package of a file."""
-    if file.suffix == ".py":
+    own = 2 if file.suffix == ".py" else _started_by(file.name)
+    if own is not None:
+        return own
+    package = package_above(file.parent)
+    try:
+        files = sorted((package / "launch").iterdir())[:_MOST] if package is not None else []
+    except OSError:
+        return None
+    first, second = (any(_started_by(each.name) == ros for each in files) for ros in (1, 2))
+    if first == second:
+        return None
+    return 1 if first else 2
+
+
+def _started_by(name: str) -> Literal[1, 2] | None:
+    """The version of ROS that starts a launch file, by its name; None for another file."""
+    if name.endswith(_ROS2) or (name.endswith(".py") and "launch" in name):
         return 2
-    files = [file]
-    if ".launch" not in file.name and not file.name.endswith(_ROS2):
-        package = package_above(file.parent)
-        try:
-            files = sorted((package / "launch").iterdir())[:_MOST] if package is not None else []
-        except OSError:
-            return None
-    second = {each.name.endswith(_ROS2) for each in files if each.match("*launch*")}
-    return (2 if second.pop() else 1) if len(second) == 1 else None
+    return 1 if name.endswith(".launch") else None
