@@ -215,3 +215,16 @@ def test_xacro_stops_at_a_file_that_its_own_package_does_not_contain(tmp_path, f
     include = f'<xacro:include filename="{file}"/>'
     (fault,) = try_robot(expanded(folder, include, cart()), standing=1.0).faults
     assert (fault.test, fault.code, fault.source) == (test, INCLUDE_ABSENT, "file")
+
+
+def test_a_robot_whose_base_is_in_an_absent_include_is_incomplete(tmp_path):
+    """Only a sensor on an empty link is left, which stands and publishes."""
+    sensor = (
+        f'<link name="box">{MASS}{COLLISION}</link><joint name="box_joint" type="fixed">'
+        '<parent link="base"/><child link="box"/></joint>'
+    )
+    verdict = try_robot(expanded(tmp_path, INCLUDE, CALL, sensor, FOR_GAZEBO), standing=1.0)
+    assert [(each.test, each.code) for each in verdict.faults] == [("plugin", INCLUDE_ABSENT)]
+    assert verdict.outcome != "file"
+    whole = sensor + '<link name="base"/>'
+    assert try_robot(expanded(tmp_path, INCLUDE, CALL, whole, FOR_GAZEBO), standing=1.0).good

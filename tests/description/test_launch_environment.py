@@ -4,7 +4,7 @@ import pytest
 from tests.coded import coded
 
 from cartwheel.codes.files import ENVIRONMENT_ASSUMED
-from cartwheel.description.launches import read_launch
+from cartwheel.description.launches import launches_near, read_launch
 
 XML = """<launch><arg name="kind" value="{value}"/>
   <param name="robot_description" command="xacro $(find bot)/urdf/$(arg kind).xacro"/>
@@ -82,4 +82,34 @@ def test_a_variable_that_is_set_is_used(started, monkeypatch):
     assert started("sim.launch.py", PYTHON.format(value='os.environ["ROS_DISTRO"] + ".xacro"')) == (
         "foxy",
         [],
+    )
+
+
+COMMAND = """<launch>
+  <arg name="made" default="$(find xacro)/xacro --inorder $(env PLACE_OF_ROBOTS)/{file}"/>
+  <param name="robot_description" command="$(arg made)"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="s" args="-urdf -param robot_description"/>
+</launch>"""
+
+
+@pytest.mark.parametrize(
+    ("file", "found"),
+    [("robots/cart.xacro", True), ("robots/other.xacro", False), ("cart.xacro", False)],
+)
+def test_a_folder_in_an_unset_variable_is_one_around_the_launch_file(
+    tmp_path, monkeypatch, file, found
+):
+    monkeypatch.delenv("PLACE_OF_ROBOTS", raising=False)
+    root = tmp_path / "repository"
+    for name in (".git", "launch", "robots"):
+        (root / name).mkdir(parents=True)
+    # Outside of the repository.
+    (tmp_path / "robots").mkdir()
+    for path in (root / "robots" / "cart.xacro", tmp_path / "robots" / "other.xacro"):
+        path.write_text('<robot name="cart"><link name="base"/></robot>')
+    launch = root / "launch" / "sim.launch"
+    launch.write_text(COMMAND.format(file=file))
+    uses = [each for each in launches_near(root, ()) if each.description is not None]
+    assert [(each.description, each.simulated) for each in uses] == (
+        [(root / file, True)] if found else []
     )

@@ -231,15 +231,23 @@ def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:
 def _lost_mover(verdict: Verdict, description: RobotDescription) -> Fault | None:
     """The absent include that may contain what moves a robot that nothing else moves.
 
-    A robot without wheels need not move, unless a launch file starts it in Gazebo. Then it is
-    unknown whether the include would move it, as it is if a build makes the file.
+    A robot without wheels need not move, unless a launch file starts it in Gazebo, or the include
+    contains its base. Then it is unknown whether the include would move it, as it is if a build
+    makes the file.
     """
     absent = [each for each in verdict.diagnostics if each.code is files.INCLUDE_ABSENT]
     made = [each for each in absent if each.values.get("template")]
     lost = most_severe(made or absent)
     wheels = any(joint.turns for joint in description.joints)
     started = verdict.launch is not None and verdict.launch.simulated
-    if lost is None or not (wheels or started):
+    attached = {joint.child for joint in description.joints}
+    baseless = any(
+        each.code is files.LINK_RECONNECTED
+        and not each.values.get("parent")
+        and each.values.get("link") not in attached
+        for each in verdict.diagnostics
+    )
+    if lost is None or not (wheels or started or baseless):
         return None
     subject = str(lost.values.get("file", ""))
     return Fault(test="plugin", subject=subject, reason=lost, sure=wheels and not made)

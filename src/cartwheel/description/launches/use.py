@@ -12,17 +12,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 from cartwheel import yaml_text
-from cartwheel.description.files.package_folders import (
-    is_file,
-    package_above,
-    package_name,
-)
+from cartwheel.description.files.package_folders import is_file, package_above, package_name
 from cartwheel.description.launches.bridging import BRIDGES, RenamedTopic, renamed_topics
-from cartwheel.description.launches.controllers import (
-    ControllerCommand,
-    by_command,
-    by_spawner,
-)
+from cartwheel.description.launches.controllers import ControllerCommand, by_command, by_spawner
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.launch_use import Unfound
 from cartwheel.description.launches.python_variables import Place, Uncertain
@@ -34,7 +26,7 @@ from cartwheel.description.launches.spawning import (
     split,
     world_in,
 )
-from cartwheel.description.launches.variants import SUFFIXES, beside
+from cartwheel.description.launches.variants import SUFFIXES, below, beside
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
 
 ABSENT = -1
@@ -198,7 +190,9 @@ class Facts:
         if file is None:
             return None
         if UNKNOWN in str(file.parent):
-            return ABSENT
+            if (found := below(file, UNKNOWN, self.file)) is None:
+                return ABSENT
+            file = found
         number = len(self.descriptions)
         if UNKNOWN not in file.name:
             file = self.here(file)

@@ -1,4 +1,4 @@
-"""Descriptions whose file names differ only in a word."""
+"""Descriptions whose file names differ only in a word, or whose folder is unknown."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from cartwheel.description.files.package_folders import is_file
+from cartwheel.description.files.repositories import repository_of
 
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
 """Ends of the names of descriptions."""
@@ -32,3 +33,22 @@ def beside(file: Path, word: str) -> dict[Path, str]:
         and (found := pattern.fullmatch(name)) is not None
         and is_file(file.parent / name)
     }
+
+
+def below(file: Path, unknown: str, launch: Path) -> Path | None:
+    """The file in a folder whose place is unknown, such as ``$(env HOME)/bot/urdf/bot.urdf``.
+
+    Args:
+        file: The path, which begins with the unknown part.
+        unknown: The text that stands for it.
+        launch: The launch file. The folder is one of those around it, within its repository, if it
+            contains the rest of the path, with at least one folder.
+    """
+    before, _, rest = str(file).rpartition(unknown)
+    parts = Path(rest.lstrip("/")).parts
+    root = repository_of(launch)
+    if before or not rest.startswith("/") or len(parts) < 2 or root is None:
+        return None
+    folders = (each for each in launch.absolute().parents if each.is_relative_to(root))
+    found = (each.joinpath(*parts) for each in folders)
+    return next((each for each in found if is_file(each)), None)
