@@ -192,17 +192,22 @@ def _dropped(verdict: Verdict, description: RobotDescription) -> Iterator[tuple[
     if coded(description.diagnostics, LEFT_OUT) is not None:
         # The missing part may contain the mass.
         return
-    inbound = {joint.child: joint for joint in description.joints}
+    held = {joint.child for joint in description.joints}
+    below: dict[str, list[str]] = {}
+    for joint in description.joints:
+        below.setdefault(joint.parent, []).append(joint.child)
     for each in description.diagnostics:
         links = each.values.get("links", ())
         if each.code is not robot.INERTIA_MISSING or not isinstance(links, tuple):
             continue
-        lost = {str(name) for name in links} & inbound.keys()
+        lost = {str(name) for name in links} & held
+        waiting = list(lost)
+        while waiting:
+            carried = set(below.get(waiting.pop(), ())) - lost
+            lost |= carried
+            waiting += carried
         for joint in description.joints:
-            carried = joint
-            while carried.child not in lost and carried.parent in inbound:
-                carried = inbound[carried.parent]
-            if joint.name in verdict.driven and carried.child in lost:
+            if joint.name in verdict.driven and joint.child in lost:
                 yield joint.name, each
                 return
 
