@@ -94,6 +94,18 @@ def test_of_two_drives_only_the_last_one_has_an_effect(tmp_path):
     assert verdict.outcome == "file"
 
 
+@pytest.mark.parametrize(("torques", "drives"), [((0.0001, 5), True), ((5, 0.0001), False)])
+def test_of_two_drives_the_torque_of_the_last_one_counts(tmp_path, torques, drives):
+    """In Gazebo, each drive also sets the torque of its wheels in each update."""
+    first, second = (
+        plugin().replace("</plugin>", f"<wheelTorque>{each}</wheelTorque></plugin>")
+        for each in torques
+    )
+    second = second.replace('name="drive"', 'name="again"')
+    verdict = try_robot(written(tmp_path, cart(), first, second), standing=1.0)
+    assert [each.passes for each in verdict.drives] == [drives]
+
+
 def test_transmissions_that_hold_the_wheels_are_tested_without_their_manager(tmp_path):
     """The manager also runs a controller, without which the drive may not steer."""
     arm = (

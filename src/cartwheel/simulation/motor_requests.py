@@ -52,8 +52,9 @@ class MotorRequests(Requests):
     ) -> MotorHandle:
         """A motor that holds a joint's velocity with at most `max_effort` N m or N.
 
-        Several requests for the same joint share the first motor whose owner does not yield. If a
-        servo already drives the joint, the motor is shared; see `ServoHandle`.
+        Several requests for the same joint share the first motor whose owner does not yield, or the
+        last one if all owners repeat their commands. If a servo already drives the joint, the motor
+        is shared; see `ServoHandle`.
 
         Args:
             joint: Joint name.
@@ -64,7 +65,8 @@ class MotorRequests(Requests):
             yields: Whether the caller leaves the joint to others while it has no command for it. It
                 then reports itself when both drive the joint.
             repeats: Whether the caller is a drive of Gazebo, which commands the joint at each
-                update, even with 0. Of several such drives, only the last one has an effect.
+                update, even with 0. Of several such drives, only the last one has an effect, with
+                its torque.
             origin: Origin of the request, for errors.
         """
         self.joint(joint, origin=origin)
@@ -78,7 +80,10 @@ class MotorRequests(Requests):
         )
         if motor is not None and motor.mode == "servo":
             motor = self._share(motor, max_effort)
-        elif motor is None or (not yields and all(each.yields for each in self._drives(joint))):
+        elif motor is None or (
+            not yields
+            and all(each.yields or (repeats and _repeats(each)) for each in self._drives(joint))
+        ):
             motor = self._entry.motors[joint] = made
         handle = MotorHandle(motor, self._stop(joint), yields=yields, repeats=repeats)
         self._add_drive(handle, origin)
@@ -158,12 +163,11 @@ class MotorRequests(Requests):
             return
         kinds = {type(each) for each in (*rivals, handle)}
         repeating = [each for each in rivals if isinstance(each, MotorHandle) and each.repeats]
-        if isinstance(handle, MotorHandle) and handle.repeats and repeating:
+        if _repeats(handle) and repeating:
             for each in repeating:
                 each.overrule()
-            self.report_two_drives(
-                joint, "as in Gazebo, only the commands of the last one have an effect", origin
-            )
+            result = "as in Gazebo, only the last one has an effect, with its torque"
+            self.report_two_drives(joint, result, origin)
         elif len(kinds) == 1:
             self.report_two_drives(joint, "the last command is used", origin)
         else:
@@ -304,3 +308,8 @@ class MotorRequests(Requests):
         gaps = np.concatenate(clouds) - centre
         radii = np.hypot(gaps[:, 0], gaps[:, 1])
         return max(0.0, float(-gaps[:, 2].min())), float(radii.max())
+
+
+def _repeats(handle: MotorHandle | ServoHandle) -> bool:
+    """Whether the owner of a handle commands its joint at each update."""
+    return isinstance(handle, MotorHandle) and handle.repeats

@@ -300,3 +300,34 @@ def test_plugins_in_an_unread_element_are_named(plugins, end):
     tags = "".join(f'<plugin filename="{each}.so"/>' for each in plugins)
     (found,) = unread(xml.parse(f"<model><gazebo><x>{tags}</x></gazebo></model>"))
     assert found.message.endswith(end)
+
+
+@pytest.mark.parametrize("encode", [str, str.encode])
+@pytest.mark.parametrize(
+    ("head", "line"),
+    [
+        ('?xml version="1.0"?>\n', 2),
+        ("left over\n<!-- a > b -->\n<?xml version='1.0'?>\n", 4),
+        ("<?xml version='1.0'?>\n--> \n", 3),
+        ("\ufeff<?xml version='1.0' encoding='UTF-8'?>\n", 2),
+    ],
+)
+def test_text_before_the_root_of_an_sdf_file_is_ignored_as_in_gazebo(encode, head, line):
+    root = xml.parse(encode(head + "<sdf version='1.6'>\n<model name='ü'/></sdf>"), "a.sdf")
+    assert (root.origin.line, root.children[0].origin.line) == (line, line + 1)
+    assert root.children[0].attributes == {"name": "ü"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "?xml?><robot name='a'/>",  # ROS reads a URDF with expat
+        "<sdf version='1.6'/>text",
+        "text<!-- <sdf/>",
+        "text<sdfs/>",
+        "text<model><sdf/></model>",
+    ],
+)
+def test_other_text_outside_of_the_root_is_an_error(text):
+    with pytest.raises(DescriptionError):
+        xml.parse(text)

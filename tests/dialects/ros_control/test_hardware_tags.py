@@ -198,6 +198,15 @@ def test_the_default_hardware_drives_none_of_several(bench):
     assert coded(made.warnings, running.CONTROLLER_NOT_STARTED, joint="a_joint", cause=cause)
 
 
+@pytest.mark.wording
+def test_a_controller_of_a_fixed_joint_with_a_transmission_says_that_it_is_fixed(bench):
+    body = beam("a", "world", kind="fixed") + transmission("a_joint", "Position")
+    made = bench(robot(body, ROS1), {"c": group("a_joint")})
+    (found,) = coded(made.warnings, running.CONTROLLER_NOT_STARTED)
+    assert found.values["cause"] == devices.CONTROLLER_INTERFACE_MISMATCH.number
+    assert "because it is fixed" in found.message
+
+
 @pytest.mark.parametrize("order", [1, -1], ids=["controllers first", "drive first"])
 @pytest.mark.parametrize("interface", ["Effort", "Velocity"])
 def test_a_drive_and_controllers_may_name_one_joint(bench, order, interface):

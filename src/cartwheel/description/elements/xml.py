@@ -32,6 +32,13 @@ _LATE_DECLARATION_BYTES = re.compile(_LATE_DECLARATION.pattern.encode(), re.DOTA
 # from each start of a comment.
 _COMMENT = re.compile(r"(?s)<!--(.*?)(-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)")
 _COMMENT_BYTES = re.compile(_COMMENT.pattern.encode())
+# Possessive: otherwise there would be two ways to separate consecutive comments.
+_HEAD = re.compile(
+    r"\A(?:[^<]|<!--.*?-->|<\?.*?\?>|<!DOCTYPE[^<>\[]*>)*+(?=<(?:sdf|gazebo)[\s>/])", re.DOTALL
+)
+_HEAD_BYTES = re.compile(_HEAD.pattern.encode(), re.DOTALL)
+_HEAD_TEXT = re.compile(r"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\ufeff)|[^<\s]", re.DOTALL)
+_HEAD_TEXT_BYTES = re.compile(rb"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\xef\xbb\xbf)|[^<\s]", re.DOTALL)
 MAX_DEPTH = 100
 """Deeper nesting indicates a damaged file, and would exceed Python's recursion limit."""
 
@@ -119,7 +126,7 @@ def parse(text: str | bytes, file: str = "<string>") -> Node:
             entities, which robots do not need and which can expand without limit.
     """
     builder = _Builder(file)
-    run_expat(text, file, builder)
+    run_expat(_without_head_text(text), file, builder)
     assert builder.root is not None
     return builder.root
 
@@ -232,6 +239,19 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
         # collection.
         parser.StartElementHandler = parser.EndElementHandler = None
         parser.CharacterDataHandler = parser.EntityDeclHandler = None
+
+
+def _without_head_text(text: str | bytes) -> str | bytes:
+    """The text without what precedes the root element of an SDF file outside of tags.
+
+    Gazebo's reader ignores it, for example a declaration without its first character; expat does
+    not. Robots in URDF are also read by programs that reject it.
+    """
+    if isinstance(text, bytes):
+        return _HEAD_BYTES.sub(
+            lambda head: _HEAD_TEXT_BYTES.sub(lambda each: each[1] or b" ", head[0]), text
+        )
+    return _HEAD.sub(lambda head: _HEAD_TEXT.sub(lambda each: each[1] or " ", head[0]), text)
 
 
 def _declared_first(text: str | bytes) -> str | bytes:

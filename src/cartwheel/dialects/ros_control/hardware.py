@@ -249,6 +249,14 @@ class Hardware:
         if interface is not None and f"{name}/{interface}" in self.references:
             return self.references[f"{name}/{interface}"]
         stated = self._description.joint(name)
+        if name not in self._joints and stated is not None and not stated.drivable:
+            raise PluginError(
+                f'joint "{name}" is not available to controllers because it is {stated.type}',
+                code=devices.CONTROLLER_INTERFACE_MISMATCH,
+                origin=stated.origin,
+                hint="Only revolute, continuous and prismatic joints have interfaces.",
+                values={"joint": name},
+            )
         if name not in self._joints and stated is not None:
             raise PluginError(
                 f'joint "{name}" is not available to controllers because {self._tags} lists it',

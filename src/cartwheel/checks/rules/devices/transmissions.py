@@ -29,6 +29,15 @@ _COMMANDS = ("position", "velocity", "effort", "acceleration")
 def transmission_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, joint in _driven_by(subject, "transmission"):
         yield from _joint_named(devices_codes.TRANSMISSION_JOINT_UNKNOWN, subject, robot, joint)
+    for robot in subject.robots:
+        if managers(robot, ros2=False):
+            notes = transmissions(robot.description)[1]
+            yield from (
+                each
+                for each in notes
+                if each.code is devices_codes.TRANSMISSION_JOINT_UNKNOWN
+                and each.values.get("joint") in robot.joint_names
+            )
 
 
 @rule(devices_codes.ROS2_CONTROL_JOINT_UNKNOWN)
