@@ -173,6 +173,37 @@ class MotorRequests(Requests):
         else:
             self.report_two_drives(joint, "the efforts of both plugins are added", origin)
 
+    def contest(
+        self, joint: str, handle: MotorHandle | ServoHandle, *, sets_motor: bool
+    ) -> list[MotorHandle] | None:
+        """Decides whether a controller or the drive plugins of its joint turn it.
+
+        All of them command it at each update. In gz-sim, they set the same command, so the last one
+        in the file wins. In Gazebo Classic, gazebo_ros2_control sets the velocity of the joint once
+        in each step, in which the motor of a drive turns it back.
+
+        Args:
+            joint: Joint name.
+            handle: The handle with the commands of the controller.
+            sets_motor: Whether it commands the same motor as the drives.
+
+        Returns:
+            The handles of drives that have no effect from now on; None if the controller has none.
+        """
+        drives = self._drives(joint)
+        rivals = [
+            each
+            for each in drives
+            if isinstance(each, MotorHandle) and each.repeats and each is not handle
+        ]
+        after = any(drives.index(each) > drives.index(handle) for each in rivals)
+        if rivals and (after or not sets_motor):
+            return None
+        overruled = [each for each in rivals if not each.overruled]
+        for each in overruled:
+            each.overrule()
+        return overruled
+
     def _share(self, motor: Motor, max_effort: float | None) -> Motor:
         """Shares a joint's motor between a drive, which sets its strength, and a servo."""
         shared = replace(motor, mode="servo", max_effort=max_effort)

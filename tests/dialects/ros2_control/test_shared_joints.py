@@ -19,10 +19,13 @@ GROUP = {
 STATES = {"type": "joint_state_broadcaster/JointStateBroadcaster"}
 
 
-def shared(bench, *commands, order=1, managers=1, drive=DRIVE, **controllers):
+def shared(bench, *commands, order=1, managers=1, drive=DRIVE, classic=False, **controllers):
     body = "".join(beam(each, "world", axis="0 0 1", kind="continuous") for each in WHEELS)
     body += system(*(ros2_joint(f"{each}_joint", *commands) for each in WHEELS))
-    plugins = "".join((ros2_plugin() * managers, drive)[::order])
+    manager = ros2_plugin()
+    if classic:
+        manager = manager.replace("gz_ros2_control-system", "libgazebo_ros2_control.so")
+    plugins = "".join((manager * managers, drive)[::order])
     return bench(robot(body, plugins), ros2_parameters(states=STATES, **controllers))
 
 
@@ -82,3 +85,48 @@ def test_the_command_of_the_last_of_two_drives_stays(bench):
     made.world.run(0.5)
     made.publish("/cmd_vel", "geometry_msgs/msg/Twist", linear={"x": 0.2})
     assert rate(made) == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("commands", [("velocity",), ("position", "velocity")], ids=str)
+@pytest.mark.parametrize(
+    ("order", "classic", "turns"),
+    [
+        # In gz-sim, both set the same command, so the last one in the file wins.
+        (1, False, "drive"),
+        (-1, False, "controller"),
+        # gazebo_ros2_control sets a velocity, which the motor of the drive changes in each step.
+        (1, True, "drive"),
+        (-1, True, "drive"),
+    ],
+)
+def test_of_a_controller_and_a_drive_one_has_no_effect(bench, commands, order, classic, turns):
+    made = shared(bench, *commands, order=order, classic=classic, group=GROUP)
+    made.world.run(0.1)
+    assert coded(made.warnings, running.JOINT_DRIVEN_TWICE, joint="left_joint")
+
+    def drive(speed):
+        made.publish("/cmd_vel", "geometry_msgs/msg/Twist", linear={"x": speed})
+
+    def control(speed):
+        made.publish("/group/commands", "std_msgs/msg/Float64MultiArray", data=[speed, speed])
+
+    effective, ignored = (drive, control) if turns == "drive" else (control, drive)
+    ignored(0.3)
+    assert abs(rate(made)) < 1e-6
+    effective(0.2)
+    assert rate(made) == pytest.approx(2.0 if turns == "drive" else 0.2, rel=1e-3)
+    ignored(0.1)
+    assert rate(made) == pytest.approx(2.0 if turns == "drive" else 0.2, rel=1e-3)
+
+
+def test_a_drive_turns_its_wheels_again_when_their_controller_stops(bench):
+    made = shared(bench, "velocity", order=-1, group=GROUP)
+    made.world.run(0.1)
+    made.publish("/cmd_vel", "geometry_msgs/msg/Twist", linear={"x": 0.2})
+    assert abs(rate(made)) < 1e-6
+    made.call(
+        "/controller_manager/switch_controller", deactivate_controllers=["group"], strictness=2
+    )
+    made.world.run(0.1)
+    made.publish("/cmd_vel", "geometry_msgs/msg/Twist", linear={"x": 0.2})
+    assert rate(made) == pytest.approx(2.0, rel=1e-3)

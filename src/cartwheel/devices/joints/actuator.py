@@ -103,6 +103,9 @@ class JointActuator:
         self._yields = config.yields
         self._idles = config.idles
         self._report_two = partial(part.report_two_drives, name, origin=origin)
+        self._contest = partial(part.contest, name, sets_motor=not config.overruns)
+        self._overruled: list[MotorHandle] = []
+        """Those of drive plugins that have no effect while a controller commands the joint."""
         self._active = self._resting = ""
         self.command = 0.0
         """The active command: rad or m, rad/s or m/s, or N m or N."""
@@ -184,11 +187,22 @@ class JointActuator:
     def activate(self, command: str) -> None:
         """Selects the active command. The joint stays at its position."""
         self._select(command)
-        if self._yields and self._rivalled:
-            added = command == "effort"
-            self._report_two(
-                "the efforts of both plugins are added" if added else "the last command is used"
-            )
+        drive = self._motor or self._servo
+        if not self._yields or drive is None or not drive.rivalled:
+            return
+        if command == "effort":
+            self._report_two("the efforts of both plugins are added")
+            return
+        overruled = self._contest(drive)
+        if overruled is None:
+            # The motor of the drive plugin turns the joint.
+            self._active = ""
+            if self._servo is not None:
+                self._servo.release()
+            self._report_two("as in Gazebo, only the commands of the drive plugin have an effect")
+            return
+        self._overruled += overruled
+        self._report_two("as in Gazebo, only the commands of the controller have an effect")
 
     def _select(self, command: str) -> None:
         self._active = command
@@ -205,6 +219,9 @@ class JointActuator:
         A position command is kept; velocity and effort commands become 0.
         """
         self.rate = self.damping = 0.0
+        for each in self._overruled:
+            each.restore()
+        self._overruled.clear()
         if self._active in ("velocity", "effort"):
             self.command = 0.0
         if self._idles:

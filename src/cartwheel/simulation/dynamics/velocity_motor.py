@@ -156,6 +156,12 @@ class MotorHandle:
         self.overruled = True
         self.rotors, self.dof = [0.0], 0
 
+    def restore(self) -> None:
+        """Makes the commands effective again."""
+        self.overruled = False
+        self.rotors, self.dof = self.stop.place
+        self.command(self.target)
+
     @property
     def turns(self) -> bool:
         """Whether the commanded velocity is nonzero."""
