@@ -145,3 +145,37 @@ def test_the_names_that_are_kept_of_a_file_are_bounded(tmp_path):
 def test_fixed_joints_of_unsupported_controllers_are_reported(tmp_path, joints, fixed):
     reported = found(own_controller(tmp_path, joints), CONTROLLER_INTERFACE_MISMATCH)
     assert [each.values["joints"] for each in reported] == [fixed] * bool(fixed)
+
+
+@pytest.mark.parametrize(
+    ("hardware", "listed", "interface"),
+    [
+        ("gazebo_ros2_control/GazeboSystem", "position, velocity", ""),
+        ("gazebo_ros2_control/GazeboSystem", "position, effort", "effort"),
+        # Gazebo's hardware does not export it, although it is listed.
+        ("gazebo_ros2_control/GazeboSystem", "position, acceleration", "acceleration"),
+        ("mock_components/GenericSystem", "position, acceleration", ""),
+    ],
+)
+def test_a_joint_must_offer_all_interfaces_of_a_controller(tmp_path, hardware, listed, interface):
+    file = tmp_path / "arm.yaml"
+    kind = "joint_trajectory_controller/JointTrajectoryController"
+    file.write_text(
+        f"controller_manager:\n  ros__parameters:\n    arm: {{type: {kind}}}\n"
+        f"arm:\n  ros__parameters:\n    joints: [elbow]\n    command_interfaces: [{listed}]\n"
+    )
+    offered = "".join(
+        f'<command_interface name="{each}"/>' for each in ("position", "velocity", "acceleration")
+    )
+    path = tmp_path / "arm.urdf"
+    path.write_text(
+        f'<robot name="arm"><link name="world"/><link name="hand">{BODY}</link>'
+        '<joint name="elbow" type="revolute"><parent link="world"/><child link="hand"/>'
+        '<limit lower="-1" upper="1" effort="9" velocity="3"/></joint>'
+        f'<ros2_control name="s" type="system"><hardware><plugin>{hardware}</plugin></hardware>'
+        f'<joint name="elbow">{offered}</joint></ros2_control><gazebo>'
+        '<plugin name="c" filename="libgazebo_ros2_control.so">'
+        f"<parameters>{file}</parameters></plugin></gazebo></robot>"
+    )
+    reported = found(path, CONTROLLER_INTERFACE_MISMATCH)
+    assert [each.values["interface"] for each in reported] == [interface] * bool(interface)

@@ -17,7 +17,7 @@ from cartwheel.description.model import Element, PluginTag
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
-from cartwheel.dialects.ros_control.interfaces import COMMANDS
+from cartwheel.dialects.ros_control.interfaces import COMMANDS, SYSTEMS, hardware_of
 from cartwheel.dialects.ros_control.parameters import OWN, SIZES, Role, Row, rows
 from cartwheel.errors import Diagnostic, Severity, UnknownNameError
 
@@ -202,9 +202,13 @@ def offers(robot: Robot, *, ros2: bool) -> dict[str, list[tuple[str, Element]]]:
         for joint in held.find_all("joint"):
             offered = found.setdefault((joint.attribute("name") or "").strip(), [])
             if ros2:
+                in_gazebo = hardware_of(held) in SYSTEMS
                 offered += [
-                    ((each.attribute("name") or "").strip().removesuffix("_pid"), each)
+                    (name, each)
                     for each in joint.find_all("command_interface")
+                    if (name := (each.attribute("name") or "").strip().removesuffix("_pid"))
+                    in COMMANDS
+                    or not in_gazebo
                 ]
                 offered.append(("", joint))
                 continue

@@ -14,9 +14,11 @@ from tests.dialects.ros_control.arms import (
 )
 from tests.dialects.ros_control.arms import ros2_system as system
 
+from cartwheel import World
 from cartwheel.graph import GoalState
 from cartwheel.messages import from_dict
 
+GAZEBO = "gz_ros2_control/GazeboSimSystem"
 GOAL = "control_msgs_ros2/action/FollowJointTrajectory_Goal"
 
 
@@ -118,3 +120,44 @@ def test_velocities_are_fed_forward(arm):
     made.world.run(1.2)
     assert made.position("beam_joint") == pytest.approx(0.5, abs=0.02)
     assert made.warnings == []
+
+
+@pytest.mark.parametrize(
+    ("hardware", "offered", "listed", "starts"),
+    [
+        (
+            "gz_ros2_control/GazeboSimSystem",
+            ("position", "velocity"),
+            ("position", "velocity"),
+            True,
+        ),
+        ("gz_ros2_control/GazeboSimSystem", ("position",), ("position", "velocity"), False),
+        # Gazebo's hardware does not export it, although it is listed.
+        (GAZEBO, ("position", "acceleration"), ("position", "acceleration"), False),
+        (
+            "mock_components/GenericSystem",
+            ("position", "acceleration"),
+            ("position", "acceleration"),
+            True,
+        ),
+    ],
+)
+def test_it_starts_only_with_all_interfaces_that_it_commands(
+    tmp_path, hardware, offered, listed, starts
+):
+    file = tmp_path / "own.yaml"
+    settings = {
+        "type": "joint_trajectory_controller/JointTrajectoryController",
+        "joints": ["beam_joint"],
+        "command_interfaces": [*listed],
+        "state_interfaces": ["position", "velocity"],
+    }
+    file.write_text(yaml.safe_dump(ros2_parameters(200, arm=settings)))
+    joints = system(ros2_joint("beam_joint", *offered))
+    joints = joints.replace(GAZEBO, hardware)
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot(beam("beam", "world") + joints, ros2_plugin(file)))
+    with World("empty", lenient=True) as world:
+        world.spawn(path)
+        world.run(0.1)
+        assert len([*world.graph.actions()]) == starts

@@ -137,3 +137,41 @@ def test_only_a_launch_file_that_is_started_keeps_controllers_from_starting(arm)
         assert coded(world, CONTROLLER_UNDEFINED, controller="move", stated="/x")
         world.run(0.1)
         assert "/arm/move/command" not in {each.name for each in world.graph.topics()}
+
+
+@pytest.mark.parametrize(
+    ("stated", "spawned", "started", "manager"),
+    [
+        ("/real", "", "other", "/real"),
+        ("real", "", "/real", None),
+        ("/", "", "arm", "/"),
+        # spawn_model adds its namespace to plugins that state none.
+        (None, "", "arm", "/"),
+        (None, "", "", None),
+        (None, "arm", "arm", None),
+        (None, "arm", "other", "/arm"),
+        # It is unknown.
+        (None, "$(arg unknown)", "other", None),
+    ],
+)
+def test_a_spawner_needs_the_namespace_of_the_controller_manager(
+    arm, stated, spawned, started, manager
+):
+    space = started.strip("/")
+    content = {space: {"move": MOVE}} if space else {"move": MOVE}
+    bot = arm(content, LOAD.format(""), spawner(started))
+    text = bot.read_text()
+    tag = "" if stated is None else f"<robotNamespace>{stated}</robotNamespace>"
+    changed = text.replace("<robotNamespace>/arm</robotNamespace>", tag)
+    assert changed != text
+    bot.write_text(changed)
+    launch = bot.parent / "arm.launch"
+    named = f' ns="{spawned}"' if spawned else ""
+    launch.write_text(
+        launch.read_text().replace('type="spawn_model"', f'type="spawn_model"{named}')
+    )
+    verdict = try_robot(bot, standing=1.0)
+    found = [each for each in verdict.observed if each.code is CONTROLLER_UNDEFINED]
+    assert [each.values["manager"] for each in found] == [manager] * (manager is not None)
+    assert bool(verdict.controllers) == (manager is None)
+    assert verdict.outcome == ("good" if manager is None else "file")

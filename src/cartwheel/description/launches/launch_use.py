@@ -63,6 +63,8 @@ class LaunchUse:
     """The world that it starts, as it is stated; empty if there is none."""
     models: tuple[str, ...] = ()
     """The names that it gives to the models that it spawns."""
+    spaces: frozenset[str] = frozenset()
+    """The namespaces in which it spawns models; `UNKNOWN` is among them if one is uncertain."""
 
 
 def only_loaded(loaded: Iterable[str], spawned: Collection[str]) -> tuple[str, ...]:

@@ -159,6 +159,10 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,
                 models=tuple(dict.fromkeys(each.name for each in facts.spawns if each.name)),
+                spaces=frozenset(
+                    UNKNOWN if "namespace" in each.unknown else each.namespace
+                    for each in facts.spawns
+                ),
             )
         )
     return found

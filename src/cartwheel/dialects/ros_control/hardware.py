@@ -272,8 +272,9 @@ class Hardware:
                 code=devices.CONTROLLER_JOINT_UNKNOWN,
             )
         joint = self._joints[name]
-        if interface is not None and interface not in joint.interfaces.commands:
-            offered = ", ".join(joint.interfaces.commands)
+        held = joint.interfaces
+        if interface is not None and interface not in (*held.commands, *held.passive):
+            offered = ", ".join(held.commands)
             raise PluginError(
                 f'joint "{name}" has no {interface} interface',
                 code=devices.CONTROLLER_INTERFACE_MISMATCH,

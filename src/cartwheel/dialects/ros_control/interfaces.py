@@ -41,6 +41,8 @@ class JointInterfaces:
     name: str
     commands: tuple[str, ...] = ()
     """Command interfaces, each one of `COMMANDS`."""
+    passive: tuple[str, ...] = ()
+    """Those that hardware of other programs than Gazebo offers, but that are not simulated."""
     states: tuple[str, ...] = ("position", "velocity", "effort")
     initial_position: float | None = None
     mimic: tuple[str, float] | None = None
@@ -189,7 +191,7 @@ def ros2_control(
                     )
                 )
                 continue
-            found = _joint(element, name, notes)
+            found = _joint(element, name, notes, in_gazebo=hardware_of(system) in SYSTEMS)
             before = joints.get(name)
             same = before is not None and (hardware_of(system) in loads) is loaded[name]
             joints[name] = _together(before, found) if before is not None and same else found
@@ -240,6 +242,7 @@ def _together(one: JointInterfaces, other: JointInterfaces) -> JointInterfaces:
     return JointInterfaces(
         name=one.name,
         commands=tuple(dict.fromkeys((*one.commands, *other.commands))),
+        passive=tuple(dict.fromkeys((*one.passive, *other.passive))),
         states=tuple(dict.fromkeys((*one.states, *other.states))),
         initial_position=start,
         mimic=one.mimic if other.mimic is None else other.mimic,
@@ -260,14 +263,19 @@ def _sensor(element: Element) -> SensorInterfaces:
     )
 
 
-def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfaces:
+def _joint(
+    element: Element, name: str, notes: list[Diagnostic], *, in_gazebo: bool
+) -> JointInterfaces:
     commands: list[str] = []
+    passive: list[str] = []
     initial: float | None = None
     by_pid = ""
     for interface in element.find_all("command_interface"):
         written = interface.attribute("name") or ""
         kind = written.removesuffix("_pid")
         if kind not in COMMANDS:
+            if not in_gazebo:
+                passive.append(kind)
             notes.append(
                 devices.INTERFACE_UNKNOWN.diagnostic(
                     f'the command interface "{kind}" of joint "{name}" is not simulated',
@@ -296,6 +304,7 @@ def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfa
     return JointInterfaces(
         name=name,
         commands=tuple(dict.fromkeys(commands)),
+        passive=tuple(dict.fromkeys(passive)),
         states=tuple(states),
         initial_position=initial,
         mimic=mimic,

@@ -67,8 +67,9 @@ class RosControl(ControlPlugin):
     """Runs the ros_control controllers that are loaded with the controller manager's services.
 
     Controllers in YAML files that you pass with ``cartwheel run --controllers`` start
-    automatically. The controller manager is in the namespace that the ``<plugin>`` or the spawner
-    specifies. By default, it is in the global namespace. Original package: ``gazebo_ros_control``.
+    automatically. The controller manager is in the namespace that the ``<plugin>`` specifies, or
+    else in that of the node that spawns the model. By default, it is in the global namespace.
+    Original package: ``gazebo_ros_control``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so",)

@@ -156,7 +156,7 @@ def selection(
     starting = starter or _starter(Path(robot.origin.file), use, launches)
     reported = undefined(robot, starting, within) if is_controlled(robot) else ()
     idle = () if starting is None else named_in(starting.loaded, files, robot)
-    apart = tuple(misplaced(starting, launches)) if is_of_ros1(robot) else ()
+    apart = tuple(misplaced(robot, starting, launches)) if is_of_ros1(robot) else ()
     if apart and not tolerant:
         wrong = named_in(itertools.chain(*map(misplaced_names, apart)), files, robot)
         names = tuple(name for name in names if name not in wrong)

@@ -20,6 +20,7 @@ from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element
 from cartwheel.errors import Diagnostic
 
+_NOT_IN_GAZEBO = ("acceleration",)
 _SHOWN = 3
 """Number of joints that a message names."""
 
@@ -86,14 +87,17 @@ def _fixed(subject: Subject) -> Iterator[Diagnostic]:
 def _unanswered(
     asked: list[Claim], held: dict[str, list[tuple[str, Element]]], *, ros2: bool
 ) -> Iterator[Diagnostic]:
-    """Joints that offer none of the interfaces requested by any of their controllers."""
+    """Joints of which no controller is offered all the interfaces that it commands."""
     joints = dict.fromkeys(claim.joint for claim in asked)
     for joint in joints:
         wanted = [claim for claim in asked if claim.joint == joint]
         offered = [name for name, _ in held.get(joint, ()) if name]
-        if any(claim.interface in offered for claim in wanted):
+        lacking = {
+            id(each.controller): each for each in reversed(wanted) if each.interface not in offered
+        }
+        if any(id(each.controller) not in lacking for each in wanted):
             continue
-        claim = wanted[0]
+        claim = next(iter(reversed(lacking.values())))
         who = (
             f'controller "{claim.controller.name}" commands the {claim.interface} of joint '
             f'"{joint}"'
@@ -114,12 +118,14 @@ def _unanswered(
                 hint="Add this element to the robot" + ("'s <ros2_control>." if ros2 else "."),
             )
             continue
-        element = held[joint][0][1]
-        if claim.interface not in ("position", "velocity", "effort"):
-            continue
         old = (
             f"offers {', '.join(dict.fromkeys(offered))}" if offered else "has no command interface"
         )
+        element = held[joint][0][1]
+        if claim.interface not in ("position", "velocity", "effort"):
+            if claim.interface in _NOT_IN_GAZEBO:
+                yield _unavailable(claim, f"{who}, whose {where} {old}")
+            continue
         written = element.tag == "hardwareInterface"
         text = f"<hardwareInterface>{_interface(claim)}</hardwareInterface>"
         yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
@@ -137,6 +143,21 @@ def _unanswered(
             mark=element.text.strip() if written else joint,
             hint=f"The controller is defined at {claim.controller.type.origin}.",
         )
+
+
+def _unavailable(claim: Claim, who: str) -> Diagnostic:
+    """An interface of ros2_control that Gazebo does not have."""
+    return devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
+        severity=severity_in(claim.controller.file),
+        message=f"{who}, so the controller does not start",
+        values={
+            "controller": claim.controller.name,
+            "joint": claim.joint,
+            "interface": claim.interface,
+        },
+        origin=claim.controller.type.origin,
+        hint="Gazebo's hardware offers position, velocity and effort only.",
+    )
 
 
 def _transmission(claim: Claim) -> str:

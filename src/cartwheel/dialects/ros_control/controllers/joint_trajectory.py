@@ -139,6 +139,10 @@ class JointTrajectoryController(Controller):
         self._joints: list[JointHardware] = [
             self.claim(name, self._interface) for name in given.commanded
         ]
+        for name in given.commanded:
+            for each in listed:
+                # It commands all of them, also those that do not change how the joints move here.
+                self.robot.hardware.joint(name, each)
         gains: list[PidGains] = []
         feedforward: list[float] = []
         if self._interface != "position":

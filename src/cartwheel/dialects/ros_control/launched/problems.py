@@ -104,8 +104,11 @@ def undefined(
             )
 
 
-def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Iterator[Diagnostic]:
-    """Controllers that a launch file starts in another namespace than that of their parameters.
+def misplaced(
+    robot: RobotDescription, starter: LaunchUse | None, launches: Sequence[LaunchUse]
+) -> Iterator[Diagnostic]:
+    """Controllers that a launch file starts in another namespace than that of the controller
+    manager, or than that of their parameters.
 
     Controllers with the same two namespaces are one problem.
 
@@ -113,10 +116,15 @@ def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Itera
     into the namespace in which the controller manager looks for them.
 
     Args:
+        robot: The robot.
         starter: The launch file.
         launches: All launch files near the robot.
     """
-    if starter is None or not starter.sought or starter.absent:
+    if starter is None or not starter.sought:
+        return
+    unmanaged = [*_unmanaged(robot, starter, launches)]
+    if unmanaged or starter.absent:
+        yield from unmanaged
         return
     read = functools.cache(_parameters)
     own = _paths(starter, read)
@@ -145,6 +153,63 @@ def misplaced(starter: LaunchUse | None, launches: Sequence[LaunchUse]) -> Itera
         apart.setdefault((space.strip("/"), stated, own[found]), {})[name] = None
     for (space, stated, file), names in apart.items():
         yield _misplaced(starter, file, [*names], f"/{space}", f"/{stated}")
+
+
+def _unmanaged(
+    robot: RobotDescription, starter: LaunchUse, launches: Sequence[LaunchUse]
+) -> Iterator[Diagnostic]:
+    """Controllers whose spawner waits for a controller manager in a namespace that has none."""
+    place = _manager_place(robot, launches)
+    if place is None:
+        return
+    manager, why = place
+    known = {each for use in launches for each in use.sought if each[0].strip("/") == manager}
+    apart: dict[str, dict[str, None]] = {}
+    for space, name in starter.sought:
+        is_global = name.startswith(f"{manager}/")
+        if space.strip("/") != manager and (manager, name) not in known and not is_global:
+            apart.setdefault(space.strip("/"), {})[name] = None
+    for space, names in apart.items():
+        listed = ", ".join(f'"{name}"' for name in [*names][:_SHOWN])
+        more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+        what = "controller" if len(names) == 1 else "controllers"
+        yield CONTROLLER_UNDEFINED.diagnostic(
+            f'"{starter.file.name}" starts the {what} {listed}{more} with a controller manager in '
+            f'"/{space}", but the robot\'s is in "/{manager}", {why}, so nothing starts them',
+            origin=Origin(file=shown_path(starter.file)),
+            values={
+                "controller": next(iter(names)),
+                "controllers": tuple(names),
+                "namespace": f"/{space}",
+                "manager": f"/{manager}",
+            },
+            hint=f"Set <robotNamespace>/{space}</robotNamespace> in the plugin, or start the "
+            f'controllers in "/{manager}".',
+        )
+
+
+def _manager_place(
+    robot: RobotDescription, launches: Sequence[LaunchUse]
+) -> tuple[str, str] | None:
+    """The namespace of the controller manager of ROS 1 in Gazebo, without the first slash, and why
+    it is there; None if it is uncertain.
+
+    Source: gazebo_ros_control, and gazebo_ros, which adds the namespace of a spawned model to the
+    plugins that state none.
+    """
+    managers = [tag for tag in robot.plugins if "gazebo_ros_control" in tag.filename]
+    file = Path(robot.origin.file).resolve()
+    own = [each for each in launches if each.description and each.description.resolve() == file]
+    if len(managers) != 1 or any(each.unknown for each in own):
+        return None
+    stated = managers[0].element.find("robotNamespace")
+    if stated is not None:
+        return stated.text.strip().strip("/"), "which its <robotNamespace> states"
+    spaces = frozenset[str]().union(*(each.spaces for each in own))
+    if len(spaces) != 1 or UNKNOWN in spaces:
+        return None
+    (space,) = spaces
+    return space.strip("/"), "the namespace of the node that spawns it"
 
 
 def _misplaced(
