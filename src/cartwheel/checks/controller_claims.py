@@ -255,14 +255,28 @@ def is_supported(controller: Controller) -> bool:
     return True
 
 
-def uncommanded(tag: PluginTag, launch: Path | None, started: Sequence[str]) -> Diagnostic:
+def uncommanded(
+    tag: PluginTag, launch: Path | None, started: Sequence[str], files: Sequence[Path] = ()
+) -> Diagnostic:
     """The diagnostic that no controller of a manager commands a joint.
 
     Args:
         tag: The controller manager.
         launch: The launch file that starts its controllers.
         started: Their names.
+        files: The YAML files that it loads.
     """
+    if plugin_named(tag.filename) is plugin_named(ROS_CONTROL):
+        for path in files:
+            file = ControlFile(path=path, named=True)
+            if path.is_file() and file.is_ros2:
+                return CONTROLLERS_NOT_FOUND.diagnostic(
+                    'the controllers are below "ros__parameters", as in ROS 2, where the '
+                    "controller manager of ROS 1 does not find them",
+                    origin=file.origin(file.root),
+                    values={"started": tuple(started)},
+                    hint='Write them without "controller_manager" and "ros__parameters".',
+                )
     message = "no file contains controllers for this controller manager"
     if started and launch is not None:
         names = ", ".join(f'"{name}"' for name in started)

@@ -269,7 +269,10 @@ def _is_prefixed(refused: Diagnostic) -> bool:
 def _uncommanded(verdict: Verdict, tag: PluginTag) -> Diagnostic:
     """Why no controller of a manager commands a joint."""
     started = tuple(name for name in verdict.spawned if name in verdict.controllers)
-    return uncommanded(tag, verdict.launch.file if verdict.launch is not None else None, started)
+    use = verdict.launch
+    if use is None:
+        return uncommanded(tag, None, started)
+    return uncommanded(tag, use.file, started, use.controllers)
 
 
 def _contains(each: Diagnostic, controller: str) -> bool:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from cartwheel import yaml_text
 from cartwheel.codes import devices, running
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
@@ -19,6 +20,7 @@ from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerFiles,
     controller_entries,
+    misspelt_key,
     moved_file,
     ros2_file,
     stated_path,
@@ -142,11 +144,7 @@ class Ros2Control(ControlPlugin):
                 )
         entries = controller_entries(merged, self.namespace, source)
         if paths and not entries and not merged.elsewhere:
-            self.warn(
-                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
-                "no parameter specifies a controller type, so no controller starts",
-                at=Origin(file=source),
-            )
+            self._report_none(paths, contents)
         # In Gazebo Classic, it sets the velocity of a joint without a motor.
         forced = short_name(self.tag.filename) == "gazebo_ros2_control"
         hardware = Hardware(self, joints, _gains(joints, merged.nodes), forced=forced)
@@ -168,6 +166,24 @@ class Ros2Control(ControlPlugin):
             name=config.manager,
             entries=entries,
             components=HardwareComponents(simulated_systems(part.description), joints, sensors),
+        )
+
+    def _report_none(self, paths: Sequence[Path], contents: Sequence[Mapping[str, Any]]) -> None:
+        """Reports that the files contain no controllers, and why, if it is known."""
+        source = ", ".join(str(path) for path in paths)
+        message, origin = "no parameter specifies a controller type", Origin(file=source)
+        found = ((path, misspelt_key(each)) for path, each in zip(paths, contents, strict=True))
+        path, key = next((each for each in found if each[1]), (None, ""))
+        if path is not None:
+            message = f'ROS 2 refuses the file, because "{key}" is not "ros__parameters"'
+            lines = yaml_text.read(path).splitlines()
+            named = (at for at, line in enumerate(lines, 1) if line.strip(" '\"").startswith(key))
+            origin = Origin(file=str(path), line=next(named, 0))
+        self.warn(
+            devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+            f"{message}, so no controller starts",
+            at=origin,
+            values={"key": key},
         )
 
     def _path(self, text: str) -> Path | None:

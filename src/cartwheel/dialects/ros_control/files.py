@@ -19,12 +19,15 @@ from cartwheel.dialects.ros_control.launch_arguments import launch_arguments
 from cartwheel.dialects.ros_control.settings import Settings, merge
 from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, PluginError
+from cartwheel.similar_names import meant_one
 
 if TYPE_CHECKING:
     from cartwheel.dialects.ros_control.controller import Controller
 
 T = TypeVar("T")
 _ROS2 = "ros__parameters"
+_MISSPELT = 0.85
+"""Similarity from which another key is probably a misspelt one."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -225,6 +228,22 @@ def is_ros2(content: Mapping[str, Any]) -> bool:
         isinstance(value, Mapping) and (_ROS2 in value or is_ros2(value))
         for value in content.values()
     )
+
+
+def misspelt_key(content: Mapping[str, Any]) -> str:
+    """The key of a node that should probably be ``ros__parameters``; empty if there is none.
+
+    ROS 2 refuses the whole file of such a key.
+    """
+    waiting: list[Mapping[str, Any]] = [content]
+    while waiting:
+        for key, value in waiting.pop().items():
+            if key == _ROS2 or not isinstance(value, Mapping):
+                continue
+            if meant_one(str(key), [_ROS2], cutoff=_MISSPELT):
+                return str(key)
+            waiting.append(value)
+    return ""
 
 
 def ros2_file(
