@@ -84,7 +84,7 @@ def cause_of_fall(
             None if one does or none is needed.
         wheel: See `lost_wheel`.
     """
-    lost = next((each for each in found if _is_body_lost(each, description)), None)
+    lost = next((each for each in found if is_body_lost(each, description)), None)
     if lost is not None or wheel is not None:
         return lost or wheel
     limp = _limp(found, description)
@@ -291,7 +291,7 @@ def _explains_fall(each: Diagnostic) -> bool:
     return each.code in _STANDING
 
 
-def _is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
+def is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
     """Whether the root link is empty because the included file that defines it is absent."""
     held = {joint.child for joint in description.joints}
     return (

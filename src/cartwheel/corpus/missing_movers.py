@@ -8,7 +8,7 @@ from pathlib import Path
 from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running
-from cartwheel.corpus.fall_causes import LEFT_OUT
+from cartwheel.corpus.fall_causes import LEFT_OUT, is_body_lost
 from cartwheel.corpus.faults import Fault, coded, most_severe
 from cartwheel.corpus.movers import (
     ignored_movers,
@@ -240,13 +240,7 @@ def _lost_mover(verdict: Verdict, description: RobotDescription) -> Fault | None
     lost = most_severe(made or absent)
     wheels = any(joint.turns for joint in description.joints)
     started = verdict.launch is not None and verdict.launch.simulated
-    attached = {joint.child for joint in description.joints}
-    baseless = any(
-        each.code is files.LINK_RECONNECTED
-        and not each.values.get("parent")
-        and each.values.get("link") not in attached
-        for each in verdict.diagnostics
-    )
+    baseless = any(is_body_lost(each, description) for each in verdict.diagnostics)
     if lost is None or not (wheels or started or baseless):
         return None
     subject = str(lost.values.get("file", ""))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
@@ -128,13 +129,13 @@ def _low_links(robot: Robot) -> Iterator[Diagnostic]:
         return
     bottom = min(wheels)
     radius = wheel_radius(robot, joints[0]) or 0.1
-    poses = starting_poses(robot)
+    poses, limp = starting_poses(robot), _limp(robot)
     for link in robot.description.links:
         if link.name in parts or link.name in robot.cut or _rolls(robot, link):
             continue
         box = bounds([solid.placed(poses[link.name]) for solid in robot.collisions[link.name]])
         height = None if box is None else float(box[0][2])
-        if height is None or bottom - height <= max(0.1 * radius, 0.005) or _is_limp(robot, link):
+        if height is None or bottom - height <= max(0.1 * radius, 0.005) or link.name in limp:
             continue
         yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
             message=f'the collision of link "{link.name}" extends '
@@ -154,23 +155,36 @@ def _rolls(robot: Robot, link: Link) -> bool:
     return moves or any(word in name for word in ("caster", "castor", "wheel", "roller", "ball"))
 
 
-def _is_limp(robot: Robot, link: Link) -> bool:
-    """Whether nothing holds one of the joints between a link and the root, so that it yields."""
+def _limp(robot: Robot) -> set[str]:
+    """The links that yield, because nothing holds one of the joints between them and the root."""
     moved = robot.driven | {
         name
         for tag in robot.description.plugins
         for role in plugin_tags.roles_with(tag.filename, "joint", "other_joint")
         for name in role.joints(tag.element)
     }
-    joint, seen = robot.inbound.get(robot.rigid_root(link.name)), set[str]()
-    while joint is not None and joint.name not in seen:
-        seen.add(joint.name)
-        axis = joint.axis
-        held = joint.name in moved or joint.mimic is not None or axis.locks
-        if not held and not axis.friction and not axis.spring_stiffness:
-            return True
-        joint = robot.inbound.get(robot.rigid_root(joint.parent))
-    return False
+    below = _below(robot)
+    waiting = [
+        joint.child
+        for joint in itertools.chain(*below.values())
+        if joint.type != "fixed" and joint.name not in moved and joint.mimic is None
+        if not (joint.axis.locks or joint.axis.friction or joint.axis.spring_stiffness)
+    ]
+    found = set(waiting)
+    while waiting:
+        carried = {joint.child for joint in below[waiting.pop()]} - found
+        found |= carried
+        waiting += carried
+    return found
+
+
+def _below(robot: Robot) -> dict[str, list[Joint]]:
+    """The joints that each link holds."""
+    below: dict[str, list[Joint]] = {name: [] for name in robot.links}
+    for joint in robot.inbound.values():
+        if joint.child in below and joint.parent in below:
+            below[joint.parent].append(joint)
+    return below
 
 
 def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
@@ -180,10 +194,7 @@ def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
     names = {joint.name for joint in joints}
     if held or not joints or not all(robot.whole(joint.child, looks=False) for joint in joints):
         return
-    below: dict[str, list[Joint]] = {name: [] for name in robot.links}
-    for joint in robot.inbound.values():
-        if joint.child in below and joint.parent in below:
-            below[joint.parent].append(joint)
+    below = _below(robot)
     rigid = _rigid(robot, below)
     rest = rest_of(robot, rigid)
     if rest is None:
