@@ -37,8 +37,10 @@ _HEAD = re.compile(
     r"\A(?:[^<]|<!--.*?-->|<\?.*?\?>|<!DOCTYPE[^<>\[]*>)*+(?=<(?:sdf|gazebo)[\s>/])", re.DOTALL
 )
 _HEAD_BYTES = re.compile(_HEAD.pattern.encode(), re.DOTALL)
-_HEAD_TEXT = re.compile(r"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\ufeff)|[^<\s]", re.DOTALL)
-_HEAD_TEXT_BYTES = re.compile(rb"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\xef\xbb\xbf)|[^<\s]", re.DOTALL)
+_HEAD_TEXT = re.compile(r"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\ufeff)|[^<\s]++", re.DOTALL)
+_HEAD_TEXT_BYTES = re.compile(
+    rb"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\xef\xbb\xbf)|[^<\s]++", re.DOTALL
+)
 MAX_DEPTH = 100
 """Deeper nesting indicates a damaged file, and would exceed Python's recursion limit."""
 

@@ -20,13 +20,13 @@ _SHOWN = 3
 
 @rule(files_codes.FILE_MISSING)
 def file_missing(subject: Subject) -> Iterator[Diagnostic]:
-    absences: dict[tuple[object, ...], list[Diagnostic]] = {}
+    absences: dict[tuple[object, ...], dict[str, Diagnostic]] = {}
     for each in _absent(subject):
         values = each.values
-        several = absences.setdefault((each.code, values.get("kind"), values.get("name")), [])
-        if all(str(each.origin) != str(other.origin) for other in several):
-            several.append(each)
-    for first, *more in absences.values():
+        several = absences.setdefault((each.code, values.get("kind"), values.get("name")), {})
+        several.setdefault(str(each.origin), each)
+    for found in absences.values():
+        first, *more = found.values()
         if not more:
             yield first
             continue
