@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from cartwheel import yaml_text
 from cartwheel.codes import devices, running
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import short_name
@@ -170,7 +171,7 @@ class Ros2Control(ControlPlugin):
 
     def _report_none(self, paths: Sequence[Path], contents: Sequence[Mapping[str, Any]]) -> None:
         """Reports that the files contain no controllers, and why, if it is known."""
-        source = ", ".join(str(path) for path in paths)
+        source = ", ".join(shown_path(path) for path in paths)
         message, origin = "no parameter specifies a controller type", Origin(file=source)
         found = ((path, misspelt_key(each)) for path, each in zip(paths, contents, strict=True))
         path, key = next((each for each in found if each[1]), (None, ""))
@@ -178,7 +179,7 @@ class Ros2Control(ControlPlugin):
             message = f'ROS 2 refuses the file, because "{key}" is not "ros__parameters"'
             lines = yaml_text.read(path).splitlines()
             named = (at for at, line in enumerate(lines, 1) if line.strip(" '\"").startswith(key))
-            origin = Origin(file=str(path), line=next(named, 0))
+            origin = Origin(file=shown_path(path), line=next(named, 0))
         self.warn(
             devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
             f"{message}, so no controller starts",
