@@ -41,6 +41,9 @@ def test_each_topic_has_the_sizes_of_its_own_drive(tmp_path):
     assert chosen["/cmd_vel"] == [of_plugin, tilts]
     assert chosen["/base/cmd_vel"] == [of_base, tilts]
     assert chosen["/other_topic"] == found
+    # The file of a single controller does not state its name.
+    unnamed = [of_plugin, of_other, tilts]
+    assert without_other_sizes(unnamed, "/base/cmd_vel", robot, ["base"]) == [of_other, tilts]
 
 
 WHEEL = WHEEL_DIAMETER_MISMATCH.diagnostic("", values={"stated": 0.2, "measured": 0.0325})

@@ -73,9 +73,14 @@ def without_other_sizes(
         for origin in (drive.tag.origin, *(each.origin for each in drive.tag.element.walk()))
     }
 
+    named = {each.values.get("controller") for each in found if each.code in _SIZES}
+
     def is_own(each: Diagnostic) -> bool:
         controller = each.values.get("controller")
-        return controller == own if own else controller is None and each.origin in places
+        if not own or controller is None:
+            return not own and controller is None and each.origin in places
+        # A file that contains a single controller does not state its name.
+        return controller == own or (own not in named and controller not in controllers)
 
     if not own and not places:
         return list(found)
