@@ -127,6 +127,10 @@ def test_controllers_of_wheels_that_a_plugin_drives_would_hold_them(workspace):
       <leftJoint>beam_joint</leftJoint></plugin>"""
     body = beam("beam", "world") + transmission("beam_joint", "Position")
     assert names(workspace, robot(body, ROS1 + drive)) == []
+    # A launch file loads them also in Gazebo, together with the gains of joints.
+    file = workspace / "arm_bringup" / "config" / "one.yaml"
+    loaded = load_robot(workspace / "arm_description" / "arm.urdf")
+    assert suggested(loaded, among=[file]) == [file]
 
 
 @pytest.mark.parametrize(

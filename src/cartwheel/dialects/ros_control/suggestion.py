@@ -46,8 +46,9 @@ def suggested(
 ) -> list[Path]:
     """Returns the controller files near a robot whose controller manager has none.
 
-    Returns nothing if the manager's tag contains an existing file. Files with controllers for
-    wheels that a plugin drives are left out, because both would command the wheels.
+    Returns nothing if the manager's tag contains an existing file. Files near the robot with
+    controllers for wheels that a plugin drives are left out, because both would command the wheels.
+    Those of a launch file command them in Gazebo as well.
 
     Args:
         robot: The robot.
@@ -63,15 +64,14 @@ def suggested(
         if role.role in ("left_wheel", "right_wheel", "left_wheels", "right_wheels")
         for joint in role.joints(tag.element)
     }
-    joints = [
-        each.name for each in robot.joints if each.type != "fixed" and each.name not in driven
-    ]
+    movable = [each.name for each in robot.joints if each.type != "fixed"]
+    joints = [name for name in movable if name not in driven]
     if not lacks_controllers(robot):
         return []
     managers = [tag for tag in robot.plugins if _manager(tag)]
     ros2 = _manager(managers[0]) != ROS_CONTROL
     if among is not None:
-        return with_controllers(among, joints, ros2=ros2)
+        return with_controllers(among, movable, ros2=ros2)
     return files_for(Path(robot.origin.file), joints, ros2=ros2, within=within)
 
 
