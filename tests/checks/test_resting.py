@@ -425,3 +425,15 @@ def test_a_tall_robot_on_a_small_oblique_foot_falls_over(tmp_path, height, falls
             assert tilt > np.pi / 4
         else:
             assert tilt == pytest.approx(finding.values["tilt"], abs=0.02)
+
+
+def test_a_robot_that_tilts_onto_a_much_lower_ball_stands_and_drives_on_its_wheels(bench, make):
+    text = cart(0.015, places=ONE, more=weight("0.1 0 0.05"))
+    assert bench.find(text, RULE) == []
+    world = make.world()
+    robot = world.spawn(load_text(text), z=RADIUS + 0.02)
+    world.run(1)
+    start = robot.pose
+    world.publish("/cmd_vel", linear_x=0.3)
+    world.run(2)
+    assert (start.inverse() @ robot.pose).position[0] == pytest.approx(0.6, rel=0.05)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -53,13 +54,12 @@ def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if robot.description.static or not robot.is_placed:
             continue
-        found = list(_low_links(robot))
-        yield from found or _raised_sides(robot)
+        yield from list(_lifting_links(robot)) or _raised_sides(robot)
 
 
 def _are_raised(robot: Robot) -> bool:
     """Whether something holds driven wheels above the ground."""
-    return any(True for _ in (*_low_links(robot), *_raised_sides(robot)))
+    return any(True for _ in (*_lifting_links(robot), *_raised_sides(robot)))
 
 
 @rule(robot_codes.BODY_ON_GROUND)
@@ -187,8 +187,40 @@ def _below(robot: Robot) -> dict[str, list[Joint]]:
     return below
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Standing:
+    """How the wheels of a drive stand on the plane on which the robot rests."""
+
+    rigid: list[str]
+    """The links that rest on it."""
+    bearing: list[str]
+    """Those that touch it."""
+    wheels: set[str]
+    """The links of all wheels."""
+    raised: list[str]
+    """The wheels of a side of which none touches it."""
+
+
 def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
     """Drives whose left or right wheels are all above the plane on which the robot stands."""
+    for each in _standing(robot):
+        if each.raised:
+            others = [name for name in each.rigid if name not in each.wheels]
+            yield from _report(robot, others, each.bearing, each.raised, each.wheels)
+
+
+def _lifting_links(robot: Robot) -> Iterator[Diagnostic]:
+    """Low links, but none with which the robot also stands on its wheels, because it tilts."""
+    found = list(_low_links(robot))
+    standing = list(_standing(robot)) if found else []
+    if not standing or any(each.raised for each in standing):
+        yield from found
+        return
+    yield from (each for each in found if each.values["link"] not in standing[0].rigid)
+
+
+def _standing(robot: Robot) -> Iterator[_Standing]:
+    """How the wheels of each drive stand; none if it is unknown."""
     held = any(joint.parent == "world" for joint in robot.description.joints)
     joints = wheel_joints(robot)
     names = {joint.name for joint in joints}
@@ -217,14 +249,12 @@ def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
             for side in sides
         ]
         raised = [
-            names
+            names[0]
             for side, height in zip(sides, heights, strict=True)
             if height > limit
             for _, names in side
         ]
-        if raised:
-            others = [name for name in rigid if name not in wheels]
-            yield from _report(robot, others, bearing, [wheel[0] for wheel in raised], wheels)
+        yield _Standing(rigid=rigid, bearing=bearing, wheels=wheels, raised=raised)
 
 
 def _gap(robot: Robot, rest: Rest, links: list[str], joint: Joint) -> float:
