@@ -55,3 +55,16 @@ def test_a_plugin_that_the_repository_builds_may_read_any_tags(ignored, tmp_path
     (tmp_path / ".git").mkdir()
     (tmp_path / "CMakeLists.txt").write_text("add_library(gazebo_ros_camera SHARED camera.cpp)")
     assert ignored(OLD, AMENT) == []
+
+
+def test_a_tag_that_the_plugin_does_not_read_need_not_name_a_link(tmp_path):
+    """The plugin of an IMU as a sensor measures at its sensor's link."""
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        '<robot name="r"><link name="base"><inertial><mass value="1"/><inertia ixx="0.01" '
+        'iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>'
+        '<box size="0.2 0.2 0.2"/></geometry></collision></link><gazebo reference="base">'
+        '<sensor name="imu" type="imu"><plugin name="imu" filename="libgazebo_ros_imu_sensor.so">'
+        "<bodyName>none</bodyName><frameName>base</frameName></plugin></sensor></gazebo></robot>"
+    )
+    assert not check(path).findings

@@ -25,9 +25,7 @@ class ImuSensorParameters:
     topic: str = tag(
         "topicName", "topic", default="imu_data", role="topic", doc="Topic of the Imu messages."
     )
-    body: str = tag(
-        "bodyName", default="", role="link", doc="No effect: the IMU is on the sensor's link."
-    )
+    body: str = tag("bodyName", default="", doc="No effect: the IMU is on the sensor's link.")
     frame: str = sensor_frame_tag("frameName", "frame_name")
     noise: float = deviation_tag(
         "gaussianNoise", unit="rad/s and m/s²", of="the noise on angular velocity and acceleration"
