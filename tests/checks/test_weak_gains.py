@@ -228,3 +228,20 @@ def test_the_loads_of_a_long_chain_are_those_of_its_parts(tmp_path):
         above = sum(0.5 + index for index in range(count - k))
         stiffness = upright_stiffness(described, described.joints[f"b{k}_joint"])
         assert stiffness == pytest.approx(2.0 * 9.8 * above)
+
+
+@pytest.mark.parametrize(("p", "reported"), [(1.0, True), (400.0, False)])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_gain_that_does_not_hold_a_level_arm_at_any_target_is_reported(
+    tmp_path, p, reported, side
+):
+    """The level arm exerts several N m, and the gain at most 2 N m between the limits."""
+    limit = 'lower="-1" upper="1" effort="1000" velocity="10"'
+    arm = beam("beam", "world", axis=f"0 {side} 0", limit=limit)
+    arm = arm.replace("</joint>", '<dynamics damping="5"/></joint>', 1)
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot(arm, GZ.format(p=p, i=0.0)))
+    found = [each for each in check(path).findings if each.code is CONTROLLER_GAIN_TOO_LOW]
+    assert [each.values["joint"] for each in found] == ["beam_joint"] * reported
+    codes = [each.code for each in try_robot(path, standing=1.0).faults]
+    assert codes == [CONTROLLER_GAIN_TOO_LOW] * reported

@@ -53,7 +53,7 @@ from cartwheel.codes.running import (
 )
 from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import try_robot
-from cartwheel.corpus.diagnosis import faults
+from cartwheel.corpus.diagnosis import _accounts, faults
 from cartwheel.corpus.drive_causes import cause_of_drive
 from cartwheel.corpus.listening import listened
 from cartwheel.corpus.motion import positions
@@ -1862,3 +1862,36 @@ def test_a_long_robot_that_tilts_a_little_until_it_rests_on_another_part_does_no
     assert verdict.stand.tilt > 0.01
     assert abs(verdict.stand.settled) < 0.005
     assert verdict.stand.state == "yes"
+
+
+def test_a_joint_that_carries_nothing_is_not_why_a_robot_sinks():
+    """Two rockers give way below the body, and a loose antenna swings above it further."""
+    legs = [
+        BOX.format(name=f"foot{y}", at="0 0 0", size="0.3 0.1 0.02")
+        + f'<joint name="rocker{y}" type="prismatic"><parent link="base"/><child link="foot{y}"/>'
+        f'<origin xyz="0 {y} -0.15"/><axis xyz="0 0 1"/>'
+        '<limit lower="-0.02" upper="0.12" effort="9" velocity="9"/></joint>'
+        for y in (0.2, -0.2)
+    ]
+    antenna = BOX.format(name="dish", at="0.05 0 0.05", size="0.02 0.02 0.02") + (
+        '<joint name="antenna" type="revolute"><parent link="base"/><child link="dish"/>'
+        '<origin xyz="0 0 0.1"/><axis xyz="0 1 0"/>'
+        '<limit lower="-3" upper="3" effort="9" velocity="9"/></joint>'
+    )
+    text = BOX.format(name="base", at="0 0 0", size="0.3 0.3 0.02") + antenna + "".join(legs)
+    robot = load_text(f'<robot name="robot">{text}</robot>', file="r.urdf")
+    with World() as one:
+        model = one.spawn(robot, z=0.17)
+        before = positions(one, model)
+        one.run(3.0)
+        (found,) = gave_way(one, model, Robot(robot, None), before, ())
+    assert found.values["joints"] == ("rocker0.2", "rocker-0.2", "antenna")
+    assert found.values["moved"] == pytest.approx(0.12, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("factor", "ratio", "accounts"),
+    [(2.0, 1.5, True), (2.0, 0.001, False), (0.5, 0.3, True), (0.5, 0.07, False), (2.0, -1, False)],
+)
+def test_a_size_explains_a_turn_rate_of_which_it_accounts_for_half(factor, ratio, accounts):
+    assert _accounts(factor, ratio) == accounts

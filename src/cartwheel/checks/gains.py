@@ -62,6 +62,7 @@ def gain_too_low(
         yield from _cannot_hold(robot, joint, gain, origin, **place)
         if not of_velocity:
             yield from _hangs(robot, joint, gain, origin, **place)
+            yield from _drops(robot, joint, gain, origin, **place)
     if not of_velocity:
         yield from _falls_over(robot, joint, gain, origin, **place)
 
@@ -207,6 +208,35 @@ def _hangs(
         values={"joint": joint.name, "gain": gain, "hanging": stiffness},
         origin=origin,
         hint=f"Use a gain well above {stiffness:.3g} N m/rad, or an integral gain.",
+        **place,
+    )
+
+
+def _drops(
+    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
+) -> Iterator[Diagnostic]:
+    """The finding that a joint drops from where it starts, whatever its target.
+
+    There, gravity's torque is larger than that of the gain at a distance of the whole range.
+    """
+    found = _pendulum(robot, joint)
+    lower, upper = joint.axis.lower, joint.axis.upper
+    if found is None or gain <= 0.0 or lower is None or upper is None or upper <= lower:
+        return
+    left, stiffness = found
+    if abs(left) <= _UPRIGHT or math.pi - abs(left) <= _HANGING or joint.axis.spring_stiffness:
+        # Loads that begin upright or hanging have findings of their own.
+        return
+    load, most = stiffness * math.sin(abs(left)), gain * (upper - lower)
+    if most + joint.axis.friction >= load:
+        return
+    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
+        f"the proportional gain of {gain:g} N m/rad does not hold the load of joint "
+        f'"{joint.name}" where it starts, {load:.3g} N m: for targets within the limits, it '
+        f"exerts at most {most:.3g} N m",
+        values={"joint": joint.name, "gain": gain, "load": load},
+        origin=origin,
+        hint=f"Use a gain well above {load / ANGLE:.3g} N m/rad, or an integral gain.",
         **place,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -286,6 +287,7 @@ def _measured(
         # A robot without its wheels rests on what it drags.
         return found if wheel is None else [e for e in found if e.code not in _WITHOUT_WHEELS]
 
+    sank = verdict.stand is not None and verdict.stand.state == "sinks"
     pushed = any(drive.passes for drive in verdict.drives)
     for drive in verdict.drives:
         if pushed and not drive.passes and is_free(said, drive.topic):
@@ -308,7 +310,12 @@ def _measured(
             )
             if reason is None and forward is not None:
                 # The radius of wheels that slide counts for the turn rate by an unknown factor.
-                reason = forward if forward.code is robot.WHEEL_DIAMETER_MISMATCH else None
+                size = forward.code is robot.WHEEL_DIAMETER_MISMATCH
+                part = size and _accounts(1.0 + drive.error, 1.0 + drive.error_turn)
+                reason = forward if part else None
+            if sank and drive.follows:
+                # It also stands well enough to drive.
+                unsteady = wheel
             reason = reason or unsteady or ignored_torque(found, 1.0 + drive.error_turn)
             yield Fault(test="turn", subject=drive.topic, reason=reason)
         if not drive.slides:
@@ -317,10 +324,11 @@ def _measured(
             yield Fault(test="sideways", subject=drive.topic, reason=reason or unsteady)
     for reach in verdict.reaches:
         if not reach.arrived and is_started(reach.controller, verdict):
-            # A robot that fell may lie on its joints.
+            # A robot that fell may lie on its joints. If it only sank, those that the ground holds
+            # were tested again above it.
             names = reach.joint, children.get(reach.joint, "")
             found = explaining("reach", reach.joint)
-            reason = _of_joint(found, *names) or fallen
+            reason = _of_joint(found, *names) or (None if sank else fallen)
             yield Fault(test="reach", subject=reach.joint, reason=reason)
     for spin in verdict.spins:
         if not spin.follows:
@@ -357,6 +365,16 @@ def _explaining(
             or drives_on(each, subject, description, verdict.controllers)
         )
     ]
+
+
+def _accounts(factor: float, ratio: float) -> bool:
+    """Whether a factor of the speed accounts for at least half of the error of the turn rate.
+
+    `ratio` is the measured turn rate relative to the commanded one.
+    """
+    if factor <= 0.0 or ratio <= 0.0:
+        return False
+    return abs(math.log(ratio / factor)) <= abs(math.log(factor))
 
 
 def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:

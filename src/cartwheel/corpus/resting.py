@@ -144,9 +144,20 @@ def gave_way(
         if way > (_SLID if robot.joints[name].type == "prismatic" else _TURNED)
     }
     if found:
-        most = max(found, key=lambda name: found[name])
-        names = ", ".join(f'"{name}"' for name in list(found)[:4])
-        more = f" and {len(found) - 4} more" if len(found) > 4 else ""
+        carrying = _carrying(world, model, robot)
+
+        def weight(name: str) -> tuple[bool, bool, float]:
+            """How likely it is that this joint lets the robot down."""
+            joint = robot.joints[name]
+            unit = _SLID if joint.type == "prismatic" else _TURNED
+            return name in carrying, rolls or not joint.turns, found[name] / unit
+
+        found = {name: found[name] for name in sorted(found, key=weight, reverse=True)}
+        most = next(iter(found))
+        # Others that moved, such as an antenna, do not let the robot down.
+        shown = [name for name in found if weight(name)[:2] == weight(most)[:2]]
+        names = ", ".join(f'"{name}"' for name in shown[:4])
+        more = f" and {len(shown) - 4} more" if len(shown) > 4 else ""
         wait = most in waiting
         why = (
             f"until its first command, the controller of each of the joints {names}{more} does not "
@@ -217,6 +228,18 @@ def sagging(
                 hint="Use a higher proportional gain, or an integral gain.",
             )
             return
+
+
+def _carrying(world: World, model: Model, robot: Robot) -> set[str]:
+    """The joints between the root link and the links on the ground, wheels among them."""
+    found: set[str] = set()
+    for contact in world.contacts(model.name):
+        if contact.models[1] != model.name:
+            joint = robot.inbound.get(robot.rigid_root(contact.links[0]))
+            while joint is not None and joint.name not in found:
+                found.add(joint.name)
+                joint = robot.inbound.get(robot.rigid_root(joint.parent))
+    return found
 
 
 def blocked(world: World, model: Model, robot: Robot) -> set[str]:
