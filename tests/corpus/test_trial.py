@@ -53,8 +53,8 @@ from cartwheel.codes.running import (
 )
 from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import try_robot
-from cartwheel.corpus.diagnosis import _accounts, faults
-from cartwheel.corpus.drive_causes import cause_of_drive
+from cartwheel.corpus.diagnosis import faults
+from cartwheel.corpus.drive_causes import cause_of_drive, explains_turn
 from cartwheel.corpus.listening import listened
 from cartwheel.corpus.motion import positions
 from cartwheel.corpus.placing import HIGH, place
@@ -1891,7 +1891,10 @@ def test_a_joint_that_carries_nothing_is_not_why_a_robot_sinks():
 
 @pytest.mark.parametrize(
     ("factor", "ratio", "accounts"),
-    [(2.0, 1.5, True), (2.0, 0.001, False), (0.5, 0.3, True), (0.5, 0.07, False), (2.0, -1, False)],
+    [(2.0, 1.5, True), (2.0, 0.001, False), (0.5, 0.5, True), (0.5, 0.07, False), (2.0, -1, False)],
 )
-def test_a_size_explains_a_turn_rate_of_which_it_accounts_for_half(factor, ratio, accounts):
-    assert _accounts(factor, ratio) == accounts
+def test_a_size_explains_a_turn_rate_that_errs_no_more_than_the_speed(factor, ratio, accounts):
+    size = WHEEL_DIAMETER_MISMATCH.diagnostic("wrong size")
+    assert explains_turn(size, factor, ratio) == accounts
+    assert not explains_turn(None, factor, ratio)
+    assert not explains_turn(SKID_STEERING.diagnostic("slides"), factor, ratio)

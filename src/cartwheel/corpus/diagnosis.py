@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -11,6 +10,7 @@ from pathlib import Path
 from cartwheel.codes import devices, files, robot, running, tags, world
 from cartwheel.corpus.drive_causes import (
     cause_of_drive,
+    explains_turn,
     flywheel,
     ignored_torque,
     is_free,
@@ -308,16 +308,15 @@ def _measured(
                 turning=True,
                 arc=drive.turning == "arc",
             )
-            if reason is None and forward is not None:
-                # The radius of wheels that slide counts for the turn rate by an unknown factor.
-                size = forward.code is robot.WHEEL_DIAMETER_MISMATCH
-                part = size and _accounts(1.0 + drive.error, 1.0 + drive.error_turn)
-                reason = forward if part else None
+            if reason is None and explains_turn(forward, 1.0 + drive.error, 1.0 + drive.error_turn):
+                reason = forward
             if sank and drive.follows:
                 # It also stands well enough to drive.
                 unsteady = wheel
             reason = reason or unsteady or ignored_torque(found, 1.0 + drive.error_turn)
-            yield Fault(test="turn", subject=drive.topic, reason=reason)
+            # How wheels with slip slide is not simulated.
+            sure = reason is None or reason.values.get("slip") is not True
+            yield Fault(test="turn", subject=drive.topic, reason=reason, sure=sure)
         if not drive.slides:
             found = explaining("sideways", drive.topic)
             reason = cause_of_drive(found, 1.0 + drive.error_sideways, sideways=True)
@@ -365,16 +364,6 @@ def _explaining(
             or drives_on(each, subject, description, verdict.controllers)
         )
     ]
-
-
-def _accounts(factor: float, ratio: float) -> bool:
-    """Whether a factor of the speed accounts for at least half of the error of the turn rate.
-
-    `ratio` is the measured turn rate relative to the commanded one.
-    """
-    if factor <= 0.0 or ratio <= 0.0:
-        return False
-    return abs(math.log(ratio / factor)) <= abs(math.log(factor))
 
 
 def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:

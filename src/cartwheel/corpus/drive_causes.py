@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import replace
 
-from cartwheel.checks.rules.wheels.wheel_separation import compensation
+from cartwheel.checks.rules.wheels.wheel_separation import UNKNOWN_SLIP, compensation
 from cartwheel.codes import robot, running
 from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW, PLUGIN_PARAMETER_OBSOLETE
 from cartwheel.corpus.faults import most_severe
@@ -84,6 +84,24 @@ def cause_of_drive(
     return _as_measured(cause, ratio)
 
 
+def explains_turn(forward: Diagnostic | None, factor: float, ratio: float) -> bool:
+    """Whether the reason of a wrong speed, if it is a wheel size, also explains the turn rate.
+
+    The radius of wheels that slide counts for the turn rate by an unknown factor, but not by more
+    than for the speed.
+
+    Args:
+        forward: The reason of the speed.
+        factor: The measured speed relative to the commanded one.
+        ratio: The measured turn rate relative to the commanded one.
+    """
+    if forward is None or forward.code is not robot.WHEEL_DIAMETER_MISMATCH:
+        return False
+    if factor <= 0.0 or ratio <= 0.0:
+        return False
+    return abs(math.log(ratio)) <= abs(math.log(factor)) + _AGREES
+
+
 def _too_weak(found: Sequence[Diagnostic], ratio: float) -> Diagnostic | None:
     """The finding that gains are too low for wheels that have to slide, which turn too slowly."""
     slides = any(
@@ -121,7 +139,8 @@ def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
         )
     return replace(
         skids,
-        message=f"{why}, {more}so it turns at {ratio:.0%} of the commanded rate, as measured",
+        message=f"{why}, {more}so it turns at {ratio:.0%} of the commanded rate, as measured"
+        f"{UNKNOWN_SLIP if 'slip' in values else ''}",
         hint=hint,
         values={**skids.values, "measured": ratio},
     )
