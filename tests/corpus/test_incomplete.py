@@ -228,3 +228,20 @@ def test_a_robot_whose_base_is_in_an_absent_include_is_incomplete(tmp_path):
     assert verdict.outcome != "file"
     whole = sensor + '<link name="base"/>'
     assert try_robot(expanded(tmp_path, INCLUDE, CALL, whole, FOR_GAZEBO), standing=1.0).good
+
+
+@pytest.mark.parametrize(
+    ("part", "outcome"),
+    [
+        ('<xacro:if value="$(arg size)"/>', "unknown"),
+        ('<xacro:include filename="$(find no_such_package)/arm.xacro"/><xacro:property name="size" '
+         'value="${load_yaml(\'$(find no_such_package)/size.yaml\')}"/>${size}', "unknown"),
+        # A name is misspelt.
+        ('<xacro:arg name="size" default="1"/><xacro:if value="$(arg sise)"/>', "file"),
+        ('<xacro:if value="${size}"/>', "file"),
+    ],
+)  # fmt: skip
+def test_a_description_is_not_at_fault_for_what_is_elsewhere(tmp_path, part, outcome):
+    verdict = try_robot(expanded(tmp_path, part, f'<link name="base">{MASS}</link>'), standing=1.0)
+    assert [each.test for each in verdict.faults] == ["load"]
+    assert verdict.outcome == outcome

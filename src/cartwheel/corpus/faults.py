@@ -84,8 +84,19 @@ class Fault:
         """``file`` if the reason is a mistake in the robot's files, and certain."""
         if self.reason is None or not self.sure or self.code in _OURS:
             return "unknown"
+        if self.test == "load" and _is_outside(self.reason):
+            return "unknown"
         ours = {code.number for code in _OURS}
         return "unknown" if self.reason.values.get("cause") in ours else "file"
+
+
+def _is_outside(reason: Diagnostic) -> bool:
+    """Whether a description cannot be read because of what is not among the robot's files: a
+    package, or the value of an argument. A package with a similar name may be meant.
+    """
+    kind = {files.FILE_MISSING: "package", files.XACRO_NAME_UNKNOWN: "argument"}
+    stated = reason.values.get("kind")
+    return kind.get(reason.code, "") == stated and not reason.values.get("meant")
 
 
 def most_severe(found: Iterable[Diagnostic]) -> Diagnostic | None:
