@@ -379,3 +379,17 @@ def test_a_part_that_a_world_or_a_launch_file_spawns_is_a_robot(tmp_path, folder
     launch = LaunchUse(file=tmp_path / "a.launch", description=eye, arguments={})
     found = survey(tmp_path, launches=[launch] if by == "launch" else [])
     assert eye in found.robots
+
+
+@pytest.mark.parametrize(("name", "kind"), [("", "part"), ('name="arm"', None)])
+def test_a_nameless_fragment_that_needs_an_absent_package_is_a_part(tmp_path, name, kind):
+    path = tmp_path / "control.xacro"
+    path.write_text(
+        f'<robot {name} xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="arm"/>'
+        '<xacro:property name="file" value="$(find no_such_package)/arm.yaml"/>'
+        '<xacro:property name="sizes" value="${load_yaml(\'$(find no_such_package)/arm.yaml\')}"/>'
+        "${sizes}</robot>"
+    )
+    found = survey(tmp_path)
+    assert found.skipped == (((path, kind),) if kind else ())
+    assert found.robots == (() if kind else (path,))

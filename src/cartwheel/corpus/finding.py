@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
-from cartwheel.codes.files import XACRO_NAME_UNKNOWN
+from cartwheel.codes.files import FILE_MISSING, XACRO_NAME_UNKNOWN
 from cartwheel.corpus.movers import is_mover
 from cartwheel.corpus.worlds import robots_in_worlds, text_of, worlds_in
 from cartwheel.description.elements.node import Node
@@ -221,10 +221,10 @@ class _Folder:
         return any(found.search(text) for other, text in self.texts.items() if other != path)
 
     def _is_nameless(self, path: Path, error: DescriptionError) -> bool:
-        """Whether a xacro that needs a name, such as that of an argument, has a ``<robot>`` without
-        a name that no plugin moves.
+        """Whether a xacro that needs a file or a name, such as that of an argument, has a
+        ``<robot>`` without a name that no plugin moves.
         """
-        if error.code is not XACRO_NAME_UNKNOWN:
+        if error.code not in (FILE_MISSING, XACRO_NAME_UNKNOWN):
             return False
         text = self.texts[path]
         root = _ROBOT.search(text)
