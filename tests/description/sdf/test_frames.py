@@ -312,3 +312,15 @@ def test_a_notation_that_is_none_is_refused(attributes, code):
     with pytest.raises(DescriptionError) as caught:
         robot(f'<link name="a"><pose {attributes}>1 0 0 0 0 0</pose></link>')
     assert named(caught.value) == code and caught.value.values["tag"] == "pose"
+
+
+def test_a_sensor_with_an_unknown_frame_keeps_its_pose_as_in_gazebo():
+    made = robot(
+        "<link name='l'><sensor name='imu' type='imu'><pose relative_to='nowhere'>0 0 0.2 0 0 0"
+        "</pose></sensor></link>",
+        version="1.9",
+    )
+    (sensor,) = made.links[0].sensors
+    close(sensor.pose, (0, 0, 0.2))
+    (found,) = [each for each in made.diagnostics if each.code is tags.NAME_UNKNOWN]
+    assert (found.severity, found.values["name"]) == ("warning", "nowhere")

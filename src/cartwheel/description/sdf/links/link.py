@@ -82,9 +82,20 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         fields["fdir1_frame"] = carrier
         fields["fdir1"] = rotate(there.orientation, fields["fdir1"])
 
+    def sensed(sensor: Node) -> Pose:
+        """The pose of a sensor, which Gazebo keeps even if its frame does not exist."""
+        try:
+            return place(sensor)
+        except DescriptionError as error:
+            if error.code is not tags.NAME_UNKNOWN:
+                raise
+            consequence = "the pose is relative to the link, as in Gazebo"
+            ctx.report(loss(error, consequence, of="sensor", severity="warning"))
+            return read_pose(sensor.child("pose"))
+
     collisions = [_collision(each, ctx, place, directed) for each in node.all("collision")]
     sensors = read_sensors(
-        node.all("sensor"), lambda each: read_sensor(each, name, place(each)), ctx.report
+        node.all("sensor"), lambda each: read_sensor(each, name, sensed(each)), ctx.report
     )
     lights = named_apart(
         "light", [read_light(each, place(each)) for each in node.all("light")], ctx
