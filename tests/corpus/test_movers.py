@@ -72,9 +72,16 @@ def test_the_only_plugin_of_a_model_with_one_turning_joint_may_move_it(tmp_path,
     assert [each.code for each in verdict.faults] == ([] if more else [PLUGIN_UNKNOWN])
 
 
+def bounded(urdf: str) -> str:
+    """A robot whose joints have limits instead of turning without end."""
+    limit = '<limit lower="-1" upper="1" effort="5" velocity="2"/></joint>'
+    first, *others = urdf.split('type="continuous"')
+    return 'type="revolute"'.join((first, *(each.replace("</joint>", limit, 1) for each in others)))
+
+
 def test_unsupported_hardware_may_be_what_moves_an_arm(tmp_path):
     """Its transmissions are for controllers, but nothing that is supported runs them."""
-    box = cart().replace('type="continuous"', 'type="revolute"')
+    box = bounded(cart())
     arm = managed("Effort").replace(MANAGER, OTHER.format("libmy_hw_gazebo_plugin.so"))
     verdict = try_robot(written(tmp_path, box, arm), standing=1.0)
     assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
@@ -100,7 +107,7 @@ def test_controllers_that_are_only_loaded_are_not_why_unsupported_hardware_does_
         '<launch><param name="robot_description" textfile="$(find robot)/robot.urdf"/>'
         '<node name="s" pkg="controller_manager" type="spawner" args="--stopped move"/></launch>'
     )
-    box = cart().replace('type="continuous"', 'type="revolute"')
+    box = bounded(cart())
     arm = managed("Effort").replace(MANAGER, OTHER.format("libmy_hw_gazebo_plugin.so"))
     verdict = try_robot(written(tmp_path, box, arm), standing=1.0)
     assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]

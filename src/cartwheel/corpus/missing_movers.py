@@ -240,7 +240,10 @@ def _lost_mover(verdict: Verdict, description: RobotDescription) -> Fault | None
     lost = most_severe(made or absent)
     wheels = any(joint.turns for joint in description.joints)
     started = verdict.launch is not None and verdict.launch.simulated
-    baseless = any(is_body_lost(each, description) for each in verdict.diagnostics)
+    # If what is left of it falls, the fall is the fault.
+    baseless = verdict.stands and any(
+        is_body_lost(each, description) for each in verdict.diagnostics
+    )
     if lost is None or not (wheels or started or baseless):
         return None
     subject = str(lost.values.get("file", ""))
