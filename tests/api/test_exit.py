@@ -45,7 +45,7 @@ while world.time < 0.4:
         ("import os\nif not os.fork(): sys.exit()\nos.wait()\nworld.run(0.2)", 0),
     ],
 )
-def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
+def test_nothing_is_left(tmp_path: Path, runtime_folder: Path, end: str, status: int) -> None:
     pytest.importorskip("foxglove")
     process = launching.Popen(
         [sys.executable, "-c", _PROGRAM.format(end=end)],
@@ -54,7 +54,7 @@ def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
         stderr=subprocess.PIPE,
         text=True,
         cwd=tmp_path,
-        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
+        env={**os.environ, "XDG_RUNTIME_DIR": str(runtime_folder)},
     )
     assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
@@ -68,7 +68,7 @@ def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
     assert recording.complete
     assert "/odom" in {topic.name for topic in recording.topics}
     if status >= 0:
-        assert list((tmp_path / "cartwheel").iterdir()) == []
+        assert list((runtime_folder / "cartwheel").iterdir()) == []
 
 
 @pytest.mark.parametrize(
