@@ -7,6 +7,7 @@ import dataclasses
 import gc
 import importlib
 import os
+import re
 import signal
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -177,9 +178,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 @pytest.fixture
-def tmp_path(tmp_path: Path) -> Path:
-    """A folder without others beside it, in which robots would be searched like in a workspace."""
-    folder = tmp_path / "folder"
+def tmp_path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder without others beside it, in which robots would be searched like in a workspace.
+
+    Its path is shorter than that of pytest's fixture, because sockets of programs are in it.
+    """
+    name = re.sub(r"\W", "_", request.node.name)[:16]
+    folder = tmp_path_factory.mktemp(name) / "f"
     folder.mkdir()
     return folder
 
