@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -57,14 +57,16 @@ def gain_too_low(
         of_velocity: Whether it is the gain of a velocity, in N m s/rad or N s/m.
         place: More arguments of the diagnostics.
     """
+    stated = _Stated(joint, gain, origin, place)
     if integral * SLOW < gain:
-        yield from _is_stuck(joint, gain, origin, **place)
-        yield from _cannot_hold(robot, joint, gain, origin, **place)
-        if not of_velocity:
-            yield from _hangs(robot, joint, gain, origin, **place)
-            yield from _drops(robot, joint, gain, origin, **place)
+        yield from _is_stuck(stated)
+        yield from _cannot_hold(robot, stated)
+        load = None if of_velocity else _pendulum(robot, joint)
+        if load is not None and gain > 0.0 and not joint.axis.spring_stiffness:
+            yield from _hangs(stated, *load)
+            yield from _drops(stated, *load)
     if not of_velocity:
-        yield from _falls_over(robot, joint, gain, origin, **place)
+        yield from _falls_over(robot, stated)
 
 
 def upright_stiffness(robot: Robot, joint: Joint) -> float:
@@ -125,31 +127,62 @@ def span(joint: Joint) -> float | None:
     return upper - lower
 
 
-def _is_stuck(
-    joint: Joint, gain: float, origin: Origin | None, **place: Any
-) -> Iterator[Diagnostic]:
+class _Stated(NamedTuple):
+    """A proportional gain of a joint, and where it is stated."""
+
+    joint: Joint
+    gain: float
+    """N m/rad or N/m."""
+    origin: Origin | None
+    place: Mapping[str, Any]
+    """More arguments of the diagnostics."""
+
+    @property
+    def units(self) -> tuple[str, str]:
+        """The units of the joint's effort and of its position."""
+        return ("N", "m") if self.joint.type == "prismatic" else ("N m", "rad")
+
+    def too_low(
+        self, why: str, least: float, *, held: bool = False, **values: float
+    ) -> Iterator[Diagnostic]:
+        """The finding that the gain is too low.
+
+        Args:
+            why: What it does not do.
+            least: The gain that should be exceeded by far.
+            held: Whether an integral gain does not suffice.
+            values: More values of the diagnostic.
+        """
+        effort, length = self.units
+        instead = ". An integral gain does not suffice." if held else ", or an integral gain."
+        yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
+            f"the proportional gain of {self.gain:g} {effort}/{length} {why}",
+            values={"joint": self.joint.name, "gain": self.gain, **values},
+            origin=self.origin,
+            hint=f"Use a gain well above {least:.3g} {effort}/{length}{instead}",
+            **self.place,
+        )
+
+
+def _is_stuck(stated: _Stated) -> Iterator[Diagnostic]:
     """The finding that a gain does not overcome a joint's friction."""
-    slides = joint.type == "prismatic"
-    way = LENGTH if slides else ANGLE
-    effort, friction = gain * way, joint.axis.friction
+    joint = stated.joint
+    way = LENGTH if joint.type == "prismatic" else ANGLE
+    effort, friction = stated.gain * way, joint.axis.friction
     if not 0.0 < effort < friction:
         return
-    unit, length = ("N", "m") if slides else ("N m", "rad")
-    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
-        f"the proportional gain of {gain:g} {unit}/{length} results in {effort:.3g} {unit} at "
-        f"{way:g} {length} from the target, which does not overcome the friction of joint "
-        f'"{joint.name}", {friction:g} {unit}',
-        values={"joint": joint.name, "gain": gain, "friction": friction},
-        origin=origin,
-        hint=f"Use a gain well above {friction / way:.3g} {unit}/{length}, or an integral gain.",
-        **place,
+    unit, length = stated.units
+    yield from stated.too_low(
+        f"results in {effort:.3g} {unit} at {way:g} {length} from the target, which does not "
+        f'overcome the friction of joint "{joint.name}", {friction:g} {unit}',
+        friction / way,
+        friction=friction,
     )
 
 
-def _cannot_hold(
-    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
-) -> Iterator[Diagnostic]:
+def _cannot_hold(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
     """The finding that a gain does not hold the weight on a sliding joint."""
+    joint, gain = stated.joint, stated.gain
     way, weight = span(joint), 0.0
     if way is not None and gain > 0.0 and joint.child in robot.placed:
         upward = abs(float(wheel_axis(robot, joint)[2]))
@@ -157,87 +190,65 @@ def _cannot_hold(
         weight = _GRAVITY * upward * load.mass if load is not None else 0.0
     if way is None or gain <= 0.0 or weight / gain <= way:
         return
-    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
-        f"the proportional gain of {gain:g} N/m does not hold the weight of {weight:.3g} N on "
-        f'joint "{joint.name}": the joint sags by {weight / gain:.3g} m, more than the {way:.3g} m '
-        "between its limits, so it stays at a limit",
-        values={"joint": joint.name, "gain": gain, "weight": weight},
-        origin=origin,
-        hint=f"Use a gain well above {weight / way:.3g} N/m, or an integral gain.",
-        **place,
+    yield from stated.too_low(
+        f'does not hold the weight of {weight:.3g} N on joint "{joint.name}": the joint sags by '
+        f"{weight / gain:.3g} m, more than the {way:.3g} m between its limits, so it stays at a "
+        "limit",
+        weight / way,
+        weight=weight,
     )
 
 
-def _falls_over(
-    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
-) -> Iterator[Diagnostic]:
+def _falls_over(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
     """The finding that a gain does not hold up what a joint that turns carries."""
-    least = upright_stiffness(robot, joint) if gain > 0.0 else 0.0
-    if gain >= least:
+    least = upright_stiffness(robot, stated.joint) if stated.gain > 0.0 else 0.0
+    if stated.gain >= least:
         return
-    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
-        f"the proportional gain of {gain:g} N m/rad does not hold up the load of joint "
-        f'"{joint.name}": near the upright position, gravity turns it over with {least:.3g} N m '
-        "per rad",
-        values={"joint": joint.name, "gain": gain, "upright": least},
-        origin=origin,
-        hint=f"Use a gain well above {least:.3g} N m/rad. An integral gain does not suffice.",
-        **place,
+    yield from stated.too_low(
+        f'does not hold up the load of joint "{stated.joint.name}": near the upright position, '
+        f"gravity turns it over with {least:.3g} N m per rad",
+        least,
+        held=True,
+        upright=least,
     )
 
 
-def _hangs(
-    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
-) -> Iterator[Diagnostic]:
-    """The finding that a gain hardly lifts what hangs from a joint.
+def _hangs(stated: _Stated, left: float, stiffness: float) -> Iterator[Diagnostic]:
+    """The finding that a gain hardly lifts what hangs from a joint; for the load see `_pendulum`.
 
     At a small angle a from where the load hangs, gravity pulls back with C a, so that the joint
     moves to p / (p + C) of its target.
     """
-    found = _pendulum(robot, joint)
-    if found is None or gain <= 0.0 or joint.axis.spring_stiffness:
-        return
-    left, stiffness = found
-    part = gain / (gain + stiffness)
+    part = stated.gain / (stated.gain + stiffness)
     if math.pi - abs(left) > _HANGING or part >= _LIFTS:
         return
-    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
-        f"the proportional gain of {gain:g} N m/rad hardly lifts what hangs from joint "
-        f'"{joint.name}": gravity pulls it back with {stiffness:.3g} N m per rad, so it moves to '
-        f"{100 * part:.2g} % of its target",
-        values={"joint": joint.name, "gain": gain, "hanging": stiffness},
-        origin=origin,
-        hint=f"Use a gain well above {stiffness:.3g} N m/rad, or an integral gain.",
-        **place,
+    yield from stated.too_low(
+        f'hardly lifts what hangs from joint "{stated.joint.name}": gravity pulls it back with '
+        f"{stiffness:.3g} N m per rad, so it moves to {100 * part:.2g} % of its target",
+        stiffness,
+        hanging=stiffness,
     )
 
 
-def _drops(
-    robot: Robot, joint: Joint, gain: float, origin: Origin | None, **place: Any
-) -> Iterator[Diagnostic]:
+def _drops(stated: _Stated, left: float, stiffness: float) -> Iterator[Diagnostic]:
     """The finding that a joint drops from where it starts, whatever its target.
 
     There, gravity's torque is larger than that of the gain at a distance of the whole range.
     """
-    found = _pendulum(robot, joint)
-    lower, upper = joint.axis.lower, joint.axis.upper
-    if found is None or gain <= 0.0 or lower is None or upper is None or upper <= lower:
+    axis = stated.joint.axis
+    if axis.lower is None or axis.upper is None or axis.upper <= axis.lower:
         return
-    left, stiffness = found
-    if abs(left) <= _UPRIGHT or math.pi - abs(left) <= _HANGING or joint.axis.spring_stiffness:
+    if abs(left) <= _UPRIGHT or math.pi - abs(left) <= _HANGING:
         # Loads that begin upright or hanging have findings of their own.
         return
-    load, most = stiffness * math.sin(abs(left)), gain * (upper - lower)
-    if most + joint.axis.friction >= load:
+    load, most = stiffness * math.sin(abs(left)), stated.gain * (axis.upper - axis.lower)
+    if most + axis.friction >= load:
         return
-    yield CONTROLLER_GAIN_TOO_LOW.diagnostic(
-        f"the proportional gain of {gain:g} N m/rad does not hold the load of joint "
-        f'"{joint.name}" where it starts, {load:.3g} N m: for targets within the limits, it '
-        f"exerts at most {most:.3g} N m",
-        values={"joint": joint.name, "gain": gain, "load": load},
-        origin=origin,
-        hint=f"Use a gain well above {load / ANGLE:.3g} N m/rad, or an integral gain.",
-        **place,
+    yield from stated.too_low(
+        f'does not hold the load of joint "{stated.joint.name}" where it starts, {load:.3g} N m: '
+        f"for targets within the limits, it exerts at most {most:.3g} N m",
+        load / ANGLE,
+        load=load,
     )
 
 

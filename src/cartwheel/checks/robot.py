@@ -173,6 +173,16 @@ class Robot:
             link = parent
         return link
 
+    def carrying(self, links: Iterable[str]) -> set[str]:
+        """Names of the joints between the root link and some links, which are moving joints."""
+        found: set[str] = set()
+        for link in links:
+            joint = self.inbound.get(self.rigid_root(link))
+            while joint is not None and joint.name not in found:
+                found.add(joint.name)
+                joint = self.inbound.get(self.rigid_root(joint.parent))
+        return found
+
     @cached_property
     def rigid_groups(self) -> dict[str, list[str]]:
         """The links of each rigid group, by root link."""

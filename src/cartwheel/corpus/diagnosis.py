@@ -34,6 +34,7 @@ from cartwheel.corpus.missing_movers import (
 )
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.package_folders import package_above
+from cartwheel.description.kinematics import carried
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Diagnostic
 
@@ -194,19 +195,11 @@ def _dropped(verdict: Verdict, description: RobotDescription) -> Iterator[tuple[
         # The missing part may contain the mass.
         return
     held = {joint.child for joint in description.joints}
-    below: dict[str, list[str]] = {}
-    for joint in description.joints:
-        below.setdefault(joint.parent, []).append(joint.child)
     for each in description.diagnostics:
         links = each.values.get("links", ())
         if each.code is not robot.INERTIA_MISSING or not isinstance(links, tuple):
             continue
-        lost = {str(name) for name in links} & held
-        waiting = list(lost)
-        while waiting:
-            carried = set(below.get(waiting.pop(), ())) - lost
-            lost |= carried
-            waiting += carried
+        lost = carried(description.joints, {str(name) for name in links} & held)
         for joint in description.joints:
             if joint.name in verdict.driven and joint.child in lost:
                 yield joint.name, each

@@ -6,11 +6,12 @@ import re
 from collections.abc import Sequence, Set
 
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import wheel_axis, wheel_links
+from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links
 from cartwheel.codes import devices, files, robot
 from cartwheel.corpus.faults import coded, most_severe
 from cartwheel.corpus.movers import may_move
 from cartwheel.corpus.verdict import Stand, Verdict
+from cartwheel.description.kinematics import carried
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.errors import Diagnostic
 
@@ -148,18 +149,9 @@ def _tips_rigid(each: Diagnostic, stand: Stand) -> bool:
 def _pushed(found: Sequence[Diagnostic], description: RobotDescription) -> Diagnostic | None:
     """A joint above a part on the ground that its limits push out of its place at the start."""
     body = Robot(description, None)
-    lows = {
-        name: min(float(solid.placed(link.pose)[:, 2].min()) for solid in body.collisions[name])
-        for name, link in body.links.items()
-        if name in body.placed and body.collisions[name]
-    }
+    lows = {name: low for name in body.placed if (low := lowest(body, name)) is not None}
     ground = min(lows.values(), default=0.0)
-    above: set[str] = set()
-    for name, low in lows.items():
-        joint = body.inbound.get(body.rigid_root(name)) if low < ground + _LOW * body.size else None
-        while joint is not None and joint.name not in above:
-            above.add(joint.name)
-            joint = body.inbound.get(body.rigid_root(joint.parent))
+    above = body.carrying(name for name, low in lows.items() if low < ground + _LOW * body.size)
     for each in found:
         joint = body.joints.get(str(each.values.get("joint", "")))
         if each.code is not robot.START_OUTSIDE_LIMITS or joint is None or joint.name not in above:
@@ -258,16 +250,7 @@ def _limp(found: Sequence[Diagnostic], description: RobotDescription) -> set[str
         for name in _listed(each, "joints")
     }
     links = {joint.child for joint in description.joints if joint.name in moved}
-    held: dict[str, list[Joint]] = {}
-    for joint in description.joints:
-        held.setdefault(joint.parent, []).append(joint)
-    waiting = list(links)
-    while waiting:
-        for joint in held.get(waiting.pop(), ()):
-            if not joint.turns and joint.child not in links:
-                links.add(joint.child)
-                waiting.append(joint.child)
-    return links
+    return carried((joint for joint in description.joints if not joint.turns), links)
 
 
 def _listed(each: Diagnostic, key: str) -> tuple[object, ...]:

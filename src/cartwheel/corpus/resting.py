@@ -232,27 +232,25 @@ def sagging(
 
 def _carrying(world: World, model: Model, robot: Robot) -> set[str]:
     """The joints between the root link and the links on the ground, wheels among them."""
-    found: set[str] = set()
-    for contact in world.contacts(model.name):
-        if contact.models[1] != model.name:
-            joint = robot.inbound.get(robot.rigid_root(contact.links[0]))
-            while joint is not None and joint.name not in found:
-                found.add(joint.name)
-                joint = robot.inbound.get(robot.rigid_root(joint.parent))
-    return found
+    return robot.carrying(
+        contact.links[0]
+        for contact in world.contacts(model.name)
+        if contact.models[1] != model.name
+    )
 
 
 def blocked(world: World, model: Model, robot: Robot) -> set[str]:
     """The joints that hold a link other than a wheel that touches the ground or another model."""
-    found: set[str] = set()
-    for contact in world.contacts(model.name):
-        joint = robot.inbound.get(robot.rigid_root(contact.links[0]))
-        if contact.models[1] == model.name or joint is None or joint.turns:
-            continue
-        while joint is not None and joint.name not in found:
-            found.add(joint.name)
-            joint = robot.inbound.get(robot.rigid_root(joint.parent))
-    return found
+
+    def is_wheel(link: str) -> bool:
+        joint = robot.inbound.get(robot.rigid_root(link))
+        return joint is not None and joint.turns
+
+    return robot.carrying(
+        contact.links[0]
+        for contact in world.contacts(model.name)
+        if contact.models[1] != model.name and not is_wheel(contact.links[0])
+    )
 
 
 def _within(joint: Joint, position: float) -> float:

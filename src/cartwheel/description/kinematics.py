@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -22,6 +22,20 @@ def joint_positions(
     """
     joints = {joint.name: joint for joint in description.joints}
     return {name: _position(joint, joints, positions) for name, joint in joints.items()}
+
+
+def carried(joints: Iterable[Joint], links: Iterable[str]) -> set[str]:
+    """Names of some links, and of all links that they carry through some joints."""
+    below: dict[str, list[str]] = {}
+    for joint in joints:
+        below.setdefault(joint.parent, []).append(joint.child)
+    found = set(links)
+    waiting = list(found)
+    while waiting:
+        more = set(below.get(waiting.pop(), ())) - found
+        found |= more
+        waiting += more
+    return found
 
 
 def link_poses(description: RobotDescription, positions: Mapping[str, float]) -> dict[str, Pose]:

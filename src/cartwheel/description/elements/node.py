@@ -355,34 +355,23 @@ def needs_xacro(root: Node) -> bool:
     Gazebo ignore these elements.
     """
     declared = "xmlns:xacro" in root.attributes
-    plain = _is_output(root)
+    file = root.origin.file.lower()
+    expanded = root.tag == "robot" and file.endswith(".urdf") and not file.endswith(".xacro.urdf")
+    calls = expressions = False
     stack = [root]
     while stack:
         node = stack.pop()
         stack.extend(node.children)
-        if node.tag.startswith("xacro:") and not plain:
-            return True
+        if node.tag.startswith("xacro:"):
+            if not expanded or node.tag.removeprefix("xacro:") in _XACRO_TAGS:
+                return True
+            calls = True
         words = (*node.attributes.values(), node.text)
-        if declared and any("${" in word or "$(" in word for word in words):
-            return True
+        if any("${" in word or "$(" in word for word in words):
+            if declared:
+                return True
+            expressions = True
         left = root.tag == "sdf" and node.tag == "uri"
         if not left and any("$(find " in word for word in words):
             return True
-    return False
-
-
-def _is_output(root: Node) -> bool:
-    """Whether xacro has already expanded a URDF, so that only calls of unknown macros are left."""
-    file = root.origin.file.lower()
-    if root.tag != "robot" or not file.endswith(".urdf") or file.endswith(".xacro.urdf"):
-        return False
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        stack.extend(node.children)
-        prefix, _, name = node.tag.rpartition(":")
-        if prefix == "xacro" and name in _XACRO_TAGS:
-            return False
-        if any("${" in word or "$(" in word for word in (*node.attributes.values(), node.text)):
-            return False
-    return True
+    return calls and expressions

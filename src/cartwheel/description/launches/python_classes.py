@@ -42,11 +42,12 @@ class Classes:
         facts: Facts,
         depth: int,
     ) -> None:
-        self._path = path
+        self.path = path
         self.defaults = dict(defaults)
         """The values of launch arguments that are not given."""
         self._given = given
-        self._facts = facts
+        self.facts = facts
+        """Receives what the actions start."""
         self._depth = depth
         self.line = 0
         """The line of the action that is made."""
@@ -62,11 +63,11 @@ class Classes:
         """Stores the default of a launch argument."""
         name = text(words.get("name", first))
         if not self._depth:
-            self._facts.declared.add(name)
+            self.facts.declared.add(name)
         if "default_value" in words and name not in self.defaults:
             self.defaults[name] = joined(words["default_value"])
         if not self._depth and name not in self._given and name in self.defaults:
-            self._facts.defaults[name] = joined(self.defaults[name])
+            self.facts.defaults[name] = joined(self.defaults[name])
         return NOTHING
 
     def setting(self, first: Any, places: list[Any], _: dict[str, Any]) -> Any:
@@ -81,12 +82,12 @@ class Classes:
 
     def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds the description in a command."""
-        origin = Origin(file=str(self._path), line=self.line)
-        return Description(self._facts.describe(joined(words.get("command", first)), origin))
+        origin = Origin(file=str(self.path), line=self.line)
+        return Description(self.facts.describe(joined(words.get("command", first)), origin))
 
     def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a Python expression, which consists of substitutions."""
-        value = evaluated(joined(words.get("expression", first)).strip(), {}, self._facts.effort)
+        value = evaluated(joined(words.get("expression", first)).strip(), {}, self.facts.effort)
         return value if is_known(value) else NOTHING
 
     def inclusion(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
@@ -101,16 +102,16 @@ class Classes:
             if isinstance(passed, dict)
             else {}
         )
-        self._facts.effort.spend(len(self.defaults))
+        self.facts.effort.spend(len(self.defaults))
         defaults = {name: joined(value) for name, value in self.defaults.items()}
         inherited = {**defaults, **self._given}
-        self._facts.include(joined(source), arguments, self._depth, inherited)
+        self.facts.include(joined(source), arguments, self._depth, inherited)
         return NOTHING
 
     def push(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Enters a namespace, until the end of the group."""
         stated = joined(words.get("namespace", first))
-        self._facts.namespace = resolved(self._facts.namespace, stated)
+        self.facts.namespace = resolved(self.facts.namespace, stated)
         return NOTHING
 
     def node(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
@@ -123,10 +124,10 @@ class Classes:
             texts = split(texts[0])
         package = text(words.get("package", ""))
         executable = text(words.get("executable", words.get("node_executable", "")))
-        space = resolved(self._facts.namespace, joined(words.get("namespace", "")))
+        space = resolved(self.facts.namespace, joined(words.get("namespace", "")))
         described = [each for each in arguments if isinstance(each, Description)]
         pairs = words.get("remappings")
-        self._facts.node(
+        self.facts.node(
             package,
             executable,
             texts,
@@ -143,14 +144,14 @@ class Classes:
             if isinstance(each, dict):
                 self._publish(space, each)
                 if package in BRIDGES and "config_file" in each:
-                    self._facts.bridge(joined(each["config_file"]))
+                    self.facts.bridge(joined(each["config_file"]))
             elif package == "controller_manager" and isinstance(each, str | list):
-                self._facts.parameters(joined(each))
+                self.facts.parameters(joined(each))
         return NOTHING
 
     def bridge(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
         """Adds the configuration file of ros_gz_bridge's action."""
-        self._facts.bridge(joined(words.get("config_file", "")))
+        self.facts.bridge(joined(words.get("config_file", "")))
         return NOTHING
 
     def _publish(self, space: str, parameters: Mapping[str, Any]) -> None:
@@ -159,15 +160,15 @@ class Classes:
         number = value.number if isinstance(value, Description) else None
         if isinstance(value, str) and value.endswith(SUFFIXES):
             # The text of a file that was opened is its path.
-            number = self._facts.add(Path(value), {})
-        self._facts.store_topic(space, number)
+            number = self.facts.add(Path(value), {})
+        self.facts.store_topic(space, number)
 
     def process(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds what a command starts."""
         parts = words.get("cmd", first)
         if isinstance(parts, list):
             said = [joined(each) for each in parts]
-            self._facts.command(split(said[0]) if len(said) == 1 else said)
+            self.facts.command(split(said[0]) if len(said) == 1 else said)
         return NOTHING
 
 

@@ -75,21 +75,16 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return
     # Declared defaults may follow their use, so the file is read twice.
-    defaults = _Reader(
-        path,
-        {},
-        arguments,
-        Facts(
-            find=facts.find,
-            read=_ignore,
-            home=facts.home,
-            effort=facts.effort,
-            reversed=facts.reversed,
-        ),
-        depth,
+    unused = Facts(
+        find=facts.find,
+        read=_ignore,
+        home=facts.home,
+        effort=facts.effort,
+        reversed=facts.reversed,
     )
-    defaults.file(tree)
-    _Reader(path, defaults.classes.defaults, arguments, facts, depth).file(tree)
+    first = Classes(path, {}, arguments, unused, depth)
+    _Reader(first).file(tree)
+    _Reader(Classes(path, first.defaults, arguments, facts, depth)).file(tree)
 
 
 def _ignore(_path: Path, _arguments: Mapping[str, str], _facts: Facts, _depth: int) -> None:
@@ -97,19 +92,12 @@ def _ignore(_path: Path, _arguments: Mapping[str, str], _facts: Facts, _depth: i
 
 
 class _Reader:
-    def __init__(
-        self,
-        path: Path,
-        defaults: Mapping[str, Any],
-        given: Mapping[str, str],
-        facts: Facts,
-        depth: int,
-    ) -> None:
-        self._path = path
-        self.classes = Classes(path, defaults, given, facts, depth)
-        self._facts = facts
+    def __init__(self, classes: Classes) -> None:
+        self._classes = classes
+        self._path = classes.path
+        self._facts = classes.facts
         self._turns = _MOST_TURNS
-        self._names = Variables({"__file__": str(path)})
+        self._names = Variables({"__file__": str(self._path)})
         self._functions: dict[str, ast.FunctionDef] = {}
         """The functions of the file that the file itself calls."""
         self._calls = 0
@@ -466,11 +454,11 @@ class _Reader:
         if meaning is None:
             return NOTHING
         if later:
-            made = functools.partial(meaning, self.classes, first, places, words)
+            made = functools.partial(meaning, self._classes, first, places, words)
             self._started.append(Later(made, self._facts.namespace))
             return self._started[-1]
-        self.classes.line = node.lineno
-        return meaning(self.classes, first, places, words)
+        self._classes.line = node.lineno
+        return meaning(self._classes, first, places, words)
 
     def _skip(self, node: ast.Call) -> None:
         """Notes that an action that is not executed does not start those that it contains."""

@@ -26,6 +26,7 @@ from cartwheel.checks.wheels import (
     wheel_widths,
 )
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.kinematics import carried
 from cartwheel.description.model import Joint, Link
 from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic
@@ -163,19 +164,14 @@ def _limp(robot: Robot) -> set[str]:
         for role in plugin_tags.roles_with(tag.filename, "joint", "other_joint")
         for name in role.joints(tag.element)
     }
-    below = _below(robot)
-    waiting = [
+    joints = list(itertools.chain(*_below(robot).values()))
+    loose = (
         joint.child
-        for joint in itertools.chain(*below.values())
+        for joint in joints
         if joint.type != "fixed" and joint.name not in moved and joint.mimic is None
         if not (joint.axis.locks or joint.axis.friction or joint.axis.spring_stiffness)
-    ]
-    found = set(waiting)
-    while waiting:
-        carried = {joint.child for joint in below[waiting.pop()]} - found
-        found |= carried
-        waiting += carried
-    return found
+    )
+    return carried(joints, loose)
 
 
 def _below(robot: Robot) -> dict[str, list[Joint]]:
