@@ -61,6 +61,21 @@ def test_a_model_that_the_world_contains_has_no_options(package):
     assert f"[{OPTIONS_CONFLICT}]" in package(*words, "-x", "1", status=2).stderr
 
 
+def test_a_launch_file_may_start_only_a_world(package):
+    (package.folder / "sim.launch").write_text("""<launch><arg name="arena" default="mud"/>
+      <include file="$(find gazebo_ros)/launch/empty_world.launch">
+        <arg name="world_name" value="worlds/$(arg arena).world"/></include></launch>""")
+    words = ("run", "sim.launch", "--headless", "--for", "0.1", "--speed", "max")
+    done = package(*words)
+    assert "launch  sim.launch; only its world is started" in done.stdout
+    assert "world   mud with " in done.stdout
+    done = package(*words, "-x", "1", status=2)
+    assert f"[{OPTIONS_CONFLICT}]" in done.stderr
+    done = package(*words, "arena:=absent", status=2)
+    assert "worlds/absent.world" in done.stderr
+    assert "[CW101 file-missing]" in done.stderr
+
+
 def test_other_commands_say_that_it_is_a_launch_file(package):
     (package.folder / "sim.launch.py").write_text("x = 1")
     for name in ("sim.launch", "sim.launch.py"):

@@ -411,3 +411,34 @@ def test_required_arguments_are_named(bot: Path, name: str, text: str) -> None:
     with raises(NOT_A_DESCRIPTION) as caught:
         read_launch(written(bot, name, text), {})
     assert "Its arguments: height, kind. Without a value: kind." in caught.value.hint
+
+
+@pytest.mark.parametrize(
+    ("content", "world"),
+    [
+        ("world:=$(find bot)/worlds/arena.world", "arena.world"),
+        ("", ""),
+        ("world:=$(find other)/worlds/arena.world", "arena.world"),
+        ("world:=$(env ARENA)", None),
+        ("gui:=$(find other)/gui", None),
+        ("robot", None),
+        ("spawner", None),
+    ],
+)
+def test_a_launch_file_that_starts_only_a_world_needs_a_known_one(bot, content, world):
+    """Without a world it must be sure that none is stated, and a robot must not be missing."""
+    name, assigned, value = content.partition(":=")
+    file = bot / "launch" / "sim.launch"
+    argument = f'<arg name="{name}" value="{value}"/>' if assigned else ""
+    more = {
+        "robot": '<param name="robot_description" textfile="$(find bot)/urdf/none.urdf"/>',
+        "spawner": '<node pkg="gazebo_ros" type="spawn_model" name="s" args="-param robot"/>',
+    }.get(content, "")
+    file.write_text(f"""<launch><include file="$(find gazebo_ros)/launch/empty_world.launch">
+      {argument}</include>{more}</launch>""")
+    if world is None:
+        with raises(NOT_A_DESCRIPTION):
+            read_launch(file, {})
+    else:
+        start = read_launch(file, {})
+        assert (start.models, Path(start.world).name, start.diagnostics) == ((), world, ())

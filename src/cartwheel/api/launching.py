@@ -37,8 +37,8 @@ def launch(
         options: Those of `World`, such as ``seed``.
 
     Raises:
-        DescriptionError: A description cannot be used, the launch file names none that exists, or
-            it does not declare an argument (CW123).
+        DescriptionError: A description cannot be used, the launch file names neither one that
+            exists nor only a world, or it does not declare an argument (CW123).
         WorldError: A model cannot be built.
         CartwheelError: An option is invalid.
     """

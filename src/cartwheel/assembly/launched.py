@@ -188,12 +188,15 @@ def spawn_all(session: Session, launched: Launched, package_path: Sequence[Path]
 def _world(
     start: LaunchStart, package_path: Sequence[Path], found: list[Diagnostic]
 ) -> WorldDescription:
-    """The world that the launch file states; a bundled one, if there is none of that name."""
+    """The world that the launch file states; a bundled one, if there is none of that name.
+
+    A launch file that starts nothing but a world requires it.
+    """
     stated = start.world or EMPTY
     try:
         return load_world(stated, package_path=package_path)
     except DescriptionError as error:
-        if error.code not in (codes.FILE_MISSING, codes.FILE_ON_NETWORK):
+        if error.code not in (codes.FILE_MISSING, codes.FILE_ON_NETWORK) or not start.models:
             raise
     name = Path(stated).stem
     if name not in bundled_worlds():

@@ -88,9 +88,10 @@ class Report(Observer):
         simulation.engine.on_diagnostic.append(self.diagnostic)
         self._topics(session)
 
-    def launched(self, file: PurePath) -> None:
-        """Prints the launch file, of which only the models and their controllers start."""
-        self._line("launch", f"{file}; only its models and their controllers are started")
+    def launched(self, file: PurePath, *, models: bool) -> None:
+        """Prints the launch file, and that its other nodes do not start."""
+        started = "models and their controllers are" if models else "world is"
+        self._line("launch", f"{file}; only its {started} started")
 
     def viewer_shown(self, url: str, access: Access) -> None:
         """Prints the address of the viewer, and who can connect."""

@@ -115,7 +115,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         if others:
             report.others(others)
         if launched.file is not None:
-            report.launched(launched.file)
+            report.launched(launched.file, models=bool(models))
         report.loaded(session, name, ros=ros)
         plan = options.plan
         plan = replace(plan, ros1_arguments=(*plan.ros1_arguments, *remappings))
@@ -164,7 +164,7 @@ def _read(options: Options) -> tuple[Launched, tuple[str, ...]]:
     if is_launch_file(Path(file)):
         launched = open_launch(Path(file), values, world=options.world, package_path=path)
         if not launched.models:
-            _refuse_place(options, f'the world of "{file}" contains its model')
+            _refuse_place(options, f'"{file}" spawns no model')
             return launched, ()
         first, *others = launched.models
         first = replace(first, name=options.model or first.name)

@@ -58,7 +58,7 @@ class LaunchStart:
 
     file: Path
     models: tuple[LaunchedModel, ...]
-    """At least one. Those that are only published are the last."""
+    """None if it starts only a world. Those that are only published are the last."""
     world: str
     """The world as the launch file states it; empty if it states none or an unknown one."""
     bridges: tuple[Path, ...]
@@ -109,7 +109,7 @@ def read_launch(
         models, lost = _models(file, facts)
     except TooCostlyError:
         raise _failure(file, "reading the launch file takes too long") from None
-    if not models:
+    if not models and not _starts_world(facts):
         required = sorted(facts.declared - {*facts.defaults, *arguments})
         named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
         named += f"Without a value: {', '.join(required)}. " if required else ""
@@ -136,6 +136,12 @@ def read_launch(
             *facts.assumed.values(),
         ),
     )
+
+
+def _starts_world(facts: Facts) -> bool:
+    """Whether a launch file starts Gazebo with a known world and without any other model."""
+    known = UNKNOWN not in facts.world if facts.world else not facts.absent
+    return facts.simulated and known and not facts.spawns and not facts.published
 
 
 def _models(file: Path, facts: Facts) -> tuple[tuple[LaunchedModel, ...], list[Spawn]]:
@@ -196,7 +202,7 @@ def _unknown(
             f"Pass a world: {WORLD.given('FILE')}.",
             what="world",
         )
-    count = max(each.use.unknown for each in models)
+    count = max((each.use.unknown for each in models), default=0)
     if count:
         yield _lost(
             file,
@@ -265,7 +271,7 @@ def _described(facts: Facts, uses: Sequence[LaunchUse]) -> Iterator[tuple[Spawn,
     """The spawned models with their descriptions; without any, the model that is only shown."""
     own = {each.described for each in facts.spawns}
     others = [number for number in range(len(uses)) if number not in own] or [*range(len(uses))]
-    for spawn in facts.spawns or [Spawn()]:
+    for spawn in facts.spawns or ([Spawn()] if uses else []):
         number = spawn.described
         if number is None and spawn.file is None and others:
             number = facts.published.get(spawn.source, others[0])
