@@ -442,3 +442,33 @@ def test_a_launch_file_that_starts_only_a_world_needs_a_known_one(bot, content, 
     else:
         start = read_launch(file, {})
         assert (start.models, Path(start.world).name, start.diagnostics) == ((), world, ())
+
+
+def test_replaced_parts_of_paths_count_and_those_of_texts_are_reported(bot):
+    file = bot / "launch" / "sim.launch.py"
+
+    def start(expression: str):
+        file.write_text(f"""
+share = get_package_share_directory("bot")
+with open(os.path.join(share, "urdf", "other.urdf")) as opened:
+    text = opened.read()
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{{"robot_description": {expression}}}]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+    ])
+""")
+        started = read_launch(file, {})
+        return [each.description.name for each in started.models], started.diagnostics
+
+    xacro = "Command(['xacro ', share + '/urdf/robot.xacro'.replace('robot', 'bot')])"
+    assert start(xacro) == (["bot.xacro"], ())
+    assert start("text.replace('absent', 'present')") == (["other.urdf"], ())
+    names, found = start("text.replace('base', 'body')")
+    assert (names, len(found)) == (["other.urdf"], 1)
+    assert coded(found, LAUNCH_VALUE_UNKNOWN, what="text", name="other.urdf", used="8")
+    # Neither an empty part nor a text that would be too long is an error.
+    assert start("text.replace('', 'a' * 9)")[0] == ["other.urdf"]
+    with raises(NOT_A_DESCRIPTION):
+        start("'aaaaaaaa.urdf'" + ".replace('a', 'aaaaaaaa')" * 6)

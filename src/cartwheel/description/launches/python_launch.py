@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import ast
 import functools
+import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any, Literal
 
+from cartwheel.description.files.package_folders import is_file
 from cartwheel.description.files.regular_files import read_regular_text
-from cartwheel.description.launches.effort import LONGEST
+from cartwheel.description.launches.effort import LONGEST, UNKNOWN
 from cartwheel.description.launches.environment import is_environ, is_variable, ros_variable
 from cartwheel.description.launches.python_actions import (
     Later,
@@ -53,6 +55,7 @@ from cartwheel.description.launches.python_values import (
 )
 from cartwheel.description.launches.python_variables import Place, Uncertain, Variables
 from cartwheel.description.launches.use import Facts
+from cartwheel.description.launches.variants import SUFFIXES
 from cartwheel.errors import Origin
 
 _STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
@@ -435,6 +438,8 @@ class _Reader:
             return str(PurePosixPath(text(first)).parent)
         if name == "open" or name in PASSED:
             return first if name == "open" else holder
+        if name == "replace" and isinstance(holder, str) and is_known(*places[:1]):
+            return self._replaced(holder, places, node.lineno)
         if name in ("process_file", "process", "process_doc"):
             # For process_doc, the document is the text of the file that xacro.parse has read.
             return self._processed(text(first), words.get("mappings", {}))
@@ -459,6 +464,31 @@ class _Reader:
             return self._started[-1]
         self._classes.line = node.lineno
         return meaning(self._classes, first, places, words)
+
+    def _replaced(self, held: str, places: list[Any], line: int) -> str:
+        """A text in which a launch file replaces parts. In that of a file, nothing is replaced.
+
+        Args:
+            held: The text, or the path of the file.
+            places: The part, and what replaces it.
+            line: Line of the launch file.
+        """
+        old = places[0]
+        if old in held:
+            new = text(places[1]) if len(places) > 1 else UNKNOWN
+            first, *others = held.split(old) if old else [held]
+            return concatenated([first, *itertools.chain(*((new, each) for each in others))])
+        file = Path(held)
+        if file.suffix in SUFFIXES and is_file(file):
+            try:
+                content = read_regular_text(file)
+            except OSError:
+                return held
+            self._facts.effort.spend(len(content))
+            if old in content:
+                place = (self._path, line, file.name)
+                self._facts.uncertain.setdefault(place, Uncertain(what="text", used=line))
+        return held
 
     def _skip(self, node: ast.Call) -> None:
         """Notes that an action that is not executed does not start those that it contains."""

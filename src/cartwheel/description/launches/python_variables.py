@@ -13,11 +13,13 @@ from cartwheel.description.launches.python_values import NOTHING, differ
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Uncertain:
-    """A function or variable that has one of several values, depending on an unknown condition."""
+    """What has one of several values: a function or variable, depending on an unknown condition, or
+    the text of a file, in which a launch file replaces parts.
+    """
 
-    what: Literal["return", "variable"]
+    what: Literal["return", "variable", "text"]
     used: int
-    """The line of the value that is used."""
+    """The line of the value that is used, or in which parts are replaced."""
 
 
 class Place(NamedTuple):

@@ -214,12 +214,16 @@ def _unknown(
         if any(what in each.spawn.unknown for each in models):
             yield _lost(file, f"{text} of a model is unknown, {_WHY}", what=what)
     for (path, line, name), each in facts.uncertain.items():
-        owner = f'the function "{name}" returns'
-        if each.what == "variable":
+        if each.what == "text":
+            reason = f'what line {each.used} replaces in the text of "{name}" is kept, {_WHY}'
+        else:
             owner = f'the variable "{name}" has'
+            if each.what == "return":
+                owner = f'the function "{name}" returns'
+            reason = f"which value {owner} is unknown, {_WHY}; that in line {each.used} is used"
         yield _lost(
             path,
-            f"which value {owner} is unknown, {_WHY}; that in line {each.used} is used",
+            reason,
             what=each.what,
             line=line,
             name=name,

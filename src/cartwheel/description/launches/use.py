@@ -108,8 +108,8 @@ class Facts:
     count: int = 0
     """Number of files that were read."""
     uncertain: dict[tuple[Path, int, str], Uncertain] = field(default_factory=dict)
-    """Functions and variables in Python that may have different values, by the file, the line of
-    the first value and the name."""
+    """Functions and variables in Python that may have different values, and texts of files, by the
+    launch file, the line of the first value and the name."""
     conditionals: dict[Place, int] = field(default_factory=dict)
     """The expressions ``a if condition else b`` with an unknown condition, with the lines of a."""
     reversed: Collection[Place] = ()
