@@ -34,6 +34,11 @@ _FRESH = 1.0
 """Time for which the list of packages in a folder is reused, s. Descriptions are read faster."""
 
 
+Searched = dict[tuple[Path, bool], tuple[float, PackagesByName]]
+"""The packages in folders, by the folder and whether it is searched at any depth, and the times at
+which the search began, s."""
+
+
 class PackageSearch:
     """Finds packages and models by name. Packages that were found are remembered.
 
@@ -41,16 +46,21 @@ class PackageSearch:
         file: The description; None uses the current folder.
         package_path: Additional folders to search first.
         environment: Environment variables.
+        searched: The folders that other searches have searched, which are also added to.
     """
 
     def __init__(
-        self, file: Path | None, package_path: Sequence[Path], environment: Mapping[str, str]
+        self,
+        file: Path | None,
+        package_path: Sequence[Path],
+        environment: Mapping[str, str],
+        searched: Searched | None = None,
     ) -> None:
         self.file = file
         self.package_path = tuple(package_path)
         self.environment = environment
         self._packages: dict[str, Path | None] = {}
-        self._searched: dict[tuple[Path, bool], tuple[float, PackagesByName]] = {}
+        self._searched: Searched = {} if searched is None else searched
         self._package_advice: dict[str, Advice] = {}
         self._model_advice: dict[str, Advice] = {}
         """By model name: a world may refer to a model many times."""

@@ -28,7 +28,7 @@ from cartwheel.description.files.package_folders import (
     package_name,
     stand_in_name,
 )
-from cartwheel.description.files.package_search import RESOURCES, PackageSearch
+from cartwheel.description.files.package_search import RESOURCES, PackageSearch, Searched
 from cartwheel.description.files.readable_files import (
     NAME_IT,
     Reach,
@@ -52,6 +52,7 @@ class Packages:
         reach: Files that a description received over the network may read; None for a file from the
             user.
         arguments: Values of the user's arguments, which may be file names.
+        searched: Folders that others have searched for packages a moment ago.
     """
 
     def __init__(
@@ -62,13 +63,14 @@ class Packages:
         *,
         reach: Reach | None = None,
         arguments: Iterable[str] = (),
+        searched: Searched | None = None,
     ) -> None:
         self.reach = reach
         self._arguments = tuple(arguments)
         self.file = file.absolute() if file is not None else None
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
-        self._search = PackageSearch(self.file, self.package_path, self._environment)
+        self._search = PackageSearch(self.file, self.package_path, self._environment, searched)
         # A world may refer to a file thousands of times.
         self._searched_after: dict[tuple[Path, ...], tuple[Path, ...]] = {}
         """The answers of `_further`."""

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
+from cartwheel.description.files.package_search import Searched
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
@@ -51,8 +52,10 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
 def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterator[LaunchUse]:
     # Which package is found depends on the folder of the launch file.
     packages: dict[Path, Packages] = {}
+    searched: Searched = {}
     for path in _files(folder, effort):
-        near = packages.setdefault(path.parent, Packages(path, package_path))
+        near = packages.get(path.parent) or Packages(path, package_path, searched=searched)
+        packages[path.parent] = near
         found: list[LaunchUse] = []
         with effort.portion():
             for each in _uses(path, near, effort):
