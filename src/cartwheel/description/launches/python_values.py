@@ -80,7 +80,7 @@ def _short(parts: Iterable[str]) -> str:
     return "".join(found)
 
 
-def concatenated(parts: Iterable[Any]) -> Any:
+def concatenated(parts: Iterable[Any]) -> str:
     """A text made of values; unknown if it is too long."""
     return _short(text(each) for each in parts)
 
