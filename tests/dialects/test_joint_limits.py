@@ -31,9 +31,11 @@ WHEEL = """<link name="{0}_wheel"><pose>0 {1} 0.1 -1.5707963 0 0</pose><inertial
   <axis><xyz>0 0 1</xyz>{2}</axis></joint>"""
 
 
-def cart(make, plugin, limits=None):
-    """A cart, with the limits of its left wheel."""
+def cart(make, plugin, limits=None, speed=None):
+    """A cart, with the limits of its left wheel: positions, or a velocity."""
     stated = "<limit><lower>{}</lower><upper>{}</upper></limit>".format(*limits) if limits else ""
+    if speed is not None:
+        stated = f"<limit><velocity>{speed}</velocity></limit>"
     wheels = WHEEL.format("left", 0.15, stated) + WHEEL.format("right", -0.15, "")
     tag = f'<plugin name="p" filename="{plugin}">{PLUGINS[plugin]}</plugin>'
     return make.world(
@@ -175,3 +177,50 @@ def test_a_saved_wheel_continues_to_its_limit(make):
     world.restore(free)
     world.run(2.0)
     assert left.position > 3.0
+
+
+STILL = LIMIT.replace('velocity="10"', 'velocity="0"')
+CONTROLS = {
+    "gz_ros2_control-system": ("gz_ros2_control/GazeboSimSystem", False),
+    "libgazebo_ros2_control.so": ("gazebo_ros2_control/GazeboSystem", True),
+}
+
+
+@pytest.mark.parametrize("command", ["position", "velocity"])
+@pytest.mark.parametrize("manager", CONTROLS)
+def test_a_velocity_limit_of_0_holds_the_joints_of_gz_sim(bench, manager, command):
+    """gazebo_ros2_control sets positions and velocities, without velocity limits."""
+    hardware, moves = CONTROLS[manager]
+    body = beam("beam", "world", axis="0 0 1", limit=STILL)
+    body += system(ros2_joint("beam_joint", command))
+    one = {"type": f"{command}_controllers/JointGroup{command.title()}Controller"}
+    made = bench(
+        robot(body, ros2_plugin("x"))
+        .replace("gz_ros2_control/GazeboSimSystem", hardware)
+        .replace("gz_ros2_control-system", manager),
+        ros2_parameters(200, one={**one, "joints": ["beam_joint"]}),
+    )
+    made.publish("/one/commands", "std_msgs/msg/Float64MultiArray", data=[0.2])
+    made.world.run(1.0)
+    expected = pytest.approx(0.2, abs=0.02) if moves else pytest.approx(0.0, abs=1e-6)
+    assert made.position("beam_joint") == expected
+
+
+@pytest.mark.parametrize("kind", ["Position", "Velocity"])
+def test_a_velocity_limit_of_0_holds_the_joints_of_ros_1(bench, kind):
+    body = beam("beam", "world", axis="0 0 1", limit=STILL) + transmission("beam_joint", kind)
+    group = f"{kind.lower()}_controllers/Joint{kind}Controller"
+    made = bench(robot(body, ROS1), {"one": {"type": group, "joint": "beam_joint"}})
+    made.publish("/one/command", "std_msgs/msg/Float64", data=0.2)
+    made.world.run(1.0)
+    assert made.position("beam_joint") == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_velocity_limit_of_0_holds_a_wheel_of_a_gz_sim_drive(make):
+    left = []
+    for speed in (9.0, 0.0):
+        world = cart(make, "gz-sim-diff-drive-system", speed=speed)
+        world.publish("/cmd_vel", linear_x=0.2)
+        world.run(1.0)
+        left.append(world.model("cart").joints.positions["left"])
+    assert left == pytest.approx([2.0, 0.0], abs=0.05)

@@ -53,7 +53,10 @@ def stated_limits(robot: RobotDescription, controllers: list[Controller]) -> Sta
 def within_speeds(
     limits: StatedLimits, robot: Robot, controllers: Sequence[Controller]
 ) -> StatedLimits:
-    """Limits at which no driven wheel turns faster than the velocity limit of its joint."""
+    """Limits at which no driven wheel turns faster than the velocity limit of its joint.
+
+    A limit of 0 is ignored: with it, the wheel does not turn at any command.
+    """
     speeds = {
         name: joint.fastest
         for each in controllers
@@ -66,7 +69,7 @@ def within_speeds(
         for name, speed in speeds.items()
         if name in robot.joints
         and robot.joints[name].turns
-        and math.isfinite(speed)
+        and 0 < speed < math.inf
         and (radius := wheel_radius(robot, robot.joints[name])) is not None
     }
     if not rims:

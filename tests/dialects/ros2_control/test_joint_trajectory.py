@@ -24,7 +24,7 @@ GOAL = "control_msgs_ros2/action/FollowJointTrajectory_Goal"
 
 @pytest.fixture
 def arm(bench, tmp_path):
-    def made(interface="position", **more):
+    def made(interface="position", *, limit="", **more):
         file = tmp_path / "own.yaml"
         settings = {
             "type": "joint_trajectory_controller/JointTrajectoryController",
@@ -34,7 +34,7 @@ def arm(bench, tmp_path):
             **more,
         }
         file.write_text(yaml.safe_dump(ros2_parameters(200, arm=settings)))
-        body = beam("beam", "world") + system(ros2_joint("beam_joint", interface))
+        body = beam("beam", "world", limit=limit) + system(ros2_joint("beam_joint", interface))
         bent = bench(robot(body, ros2_plugin(file)))
         bent.world.run(0.1)
         (bent.action,) = bent.world.graph.actions()
@@ -52,6 +52,13 @@ def point(seconds, *positions, **more):
 def send(made, *points, **more):
     trajectory = {"joint_names": ["beam_joint"], "points": list(points)}
     return made.action.submit(from_dict(GOAL, {"trajectory": trajectory, **more}))
+
+
+def test_the_only_point_at_time_0_does_not_wait_for_a_joint_that_cannot_move(arm):
+    made = arm(limit='lower="-3" upper="3" effort="100" velocity="0"')
+    assert send(made, point(0, 0.5)).state is GoalState.ACTIVE
+    made.world.run(0.5)
+    assert made.position("beam_joint") == pytest.approx(0.0, abs=0.01)
 
 
 def test_it_must_stop_at_the_end_unless_it_may_go_on(arm):

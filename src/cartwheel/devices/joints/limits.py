@@ -42,8 +42,12 @@ def position_range(joint: Joint | None) -> tuple[float, float]:
 
 
 def velocity_limit(joint: Joint | None) -> float:
-    """Returns the stated maximum speed of a joint, rad/s or m/s; infinite without a limit."""
-    return (joint.axis.velocity if joint is not None else None) or math.inf
+    """Returns the stated maximum speed of a joint, rad/s or m/s; infinite without a limit.
+
+    A limit of 0 holds the joint, as in gz-sim's physics and in ROS 1's joint_limits_interface.
+    """
+    stated = joint.axis.velocity if joint is not None else None
+    return math.inf if stated is None else stated
 
 
 def velocity_bounds(limits: JointLimits, position: Number) -> tuple[Number, Number]:

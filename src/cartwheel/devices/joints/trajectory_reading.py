@@ -114,9 +114,14 @@ class TrajectoryReader:
         return Trajectory(begin_ns, [first, *points])
 
     def _shortest(self, point: Waypoint) -> float:
-        """Returns the shortest time in s in which the joints can reach a point."""
+        """Returns the shortest time in s in which the joints that can move can reach a point."""
         ways = zip(point.position, self._joints, strict=True)
-        return max(abs(place - joint.position) / joint.limits.velocity for place, joint in ways)
+        times = (
+            abs(place - joint.position) / joint.limits.velocity
+            for place, joint in ways
+            if joint.limits.velocity
+        )
+        return max(times, default=0.0)
 
     def _order(self, names: list[str]) -> list[int]:
         """Returns the index of each of our joints in a message; -1 if missing."""

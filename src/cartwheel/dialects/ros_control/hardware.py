@@ -12,7 +12,7 @@ from cartwheel.description.model import Joint, Mimic, RobotDescription
 from cartwheel.devices.joints.actuator import JointActuator, JointActuatorConfig
 from cartwheel.devices.joints.gravity import gravity_efforts
 from cartwheel.devices.joints.inertia import inertial_efforts
-from cartwheel.devices.joints.limits import JointLimits, position_range
+from cartwheel.devices.joints.limits import JointLimits, position_range, velocity_limit
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces
 from cartwheel.dialects.ros_control.settings import Settings
@@ -78,7 +78,7 @@ class JointHardware(JointActuator):
         self.name = interfaces.name
         """Name for controllers. In a reference, it differs from the name in the description."""
         self.interfaces = interfaces
-        joint_limits = _limits(joint, limits)
+        joint_limits = _limits(joint, limits, forced=forced)
         free = [each for each in interfaces.commands if gains is None or gains[0] != each]
         command = "position" if "position" in free else "velocity"
         strength = joint_limits.effort
@@ -110,14 +110,15 @@ class JointHardware(JointActuator):
             owner.part.mimic(interfaces.name, mimic, origin=interfaces.origin)
 
 
-def _limits(joint: Joint, settings: Settings | None) -> JointLimits:
+def _limits(joint: Joint, settings: Settings | None, *, forced: bool) -> JointLimits:
     """Returns a joint's limits from its description and the parameters.
 
+    gazebo_ros2_control (`forced`) has no velocity limits, so a limit of 0 does not hold its joints.
     Source: joint_limits_interface, joint_limits_rosparam.
     """
     axis = joint.axis
     effort = axis.effort if axis.effort else math.inf
-    velocity = axis.velocity if axis.velocity else math.inf
+    velocity = math.inf if forced and axis.velocity == 0 else velocity_limit(joint)
     lower, upper = position_range(joint)
     if settings is not None:
         if settings.boolean("has_position_limits", False):
