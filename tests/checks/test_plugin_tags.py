@@ -52,3 +52,9 @@ def test_a_torque_of_zero_is_reported_by_the_spelling_that_gazebo_reads(
     text = spoil(("<wheelTorque>2</wheelTorque>", f"<torque>{torque}</torque>"))
     assert not bench.find(text, "effort-zero")
     assert len(bench.find(text, "plugin-parameter-obsolete")) == 1
+
+
+@pytest.mark.parametrize(("torque", "count"), [("5", 0), ("5.0", 0), ("4", 1)])
+def test_an_ignored_torque_that_is_the_default_changes_nothing(torque, count, bench, spoil):
+    text = spoil(("<wheelTorque>2</wheelTorque>", f"<torque>{torque}</torque>"))
+    assert len(bench.find(text, "plugin-parameter-obsolete")) == count

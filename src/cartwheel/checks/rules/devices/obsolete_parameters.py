@@ -36,6 +36,8 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                 if any(name not in torque.obsolete for name in stated):
                     continue
                 for name, each in stated.items():
+                    if nodes.number(each.text) == torque.default[0]:
+                        continue
                     yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
                         message=f"Gazebo 11 ignores <{name}>, so the wheel torque is "
                         f"{torque.default[0]:g} N m instead of {each.text.strip()} N m",
