@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import pkgutil
+import re
 
 import pytest
 from tests.checks.seeded import LUMP, WITH_ADVICE, WITHOUT_PLACE
@@ -484,6 +485,37 @@ def test_a_motor_without_force_is_given_what_bears_its_load(bench, spoil):
     # 30 kg at 0.1 m and 0.1 kg at 0.21 m: 2 * 9.8 * 3.021 = 59.2
     heavy = ('<mass value="0.3"/>', '<mass value="30"/>')
     assert bench.find(spoil(drive, weak, heavy), "effort-zero")[0].instead == 'effort="60"'
+
+
+INTERFACE, GAIN = '<command_interface name="{}"/>', '<param name="pos_kp">9</param>'
+
+
+@pytest.mark.parametrize(
+    ("inside", "plugin", "reported"),
+    [
+        (INTERFACE.format("position"), "libgazebo_ros2_control.so", False),
+        (INTERFACE.format("velocity"), "libgazebo_ros2_control.so", False),
+        (INTERFACE.format("effort"), "libgazebo_ros2_control.so", True),
+        (f"{INTERFACE.format('position')}{GAIN}", "libgazebo_ros2_control.so", True),
+        (INTERFACE.format("position"), "gz_ros2_control-system", True),
+    ],
+)
+@pytest.mark.parametrize("limit", ["effort", "velocity"])
+def test_positions_that_gazebo_classic_sets_need_no_motor(
+    *, bench, spoil, inside, plugin, reported, limit
+):
+    """gazebo_ros2_control sets positions and velocities, whatever the limits of the joint."""
+    drive = (
+        "  <gazebo>\n",
+        '<ros2_control name="c" type="system"><hardware>'
+        "<plugin>gazebo_ros2_control/GazeboSystem</plugin></hardware>"
+        f'<joint name="arm_joint">{inside}</joint></ros2_control>'
+        f'<gazebo><plugin filename="{plugin}" name="control"/></gazebo><gazebo>\n',
+    )
+    old = 'lower="-1" upper="1" effort="5" velocity="2"'
+    assert f'{limit}="' in old
+    new = re.sub(f'{limit}="[0-9]+"', f'{limit}="0"', old)
+    assert bool(bench.find(spoil(drive, (old, new)), "effort-zero")) is reported
 
 
 CONTROLLERS = """arm:

@@ -17,8 +17,10 @@ from cartwheel.simulation.limits import FARTHEST
 
 COMMANDS = ("position", "velocity", "effort")
 """Supported command interfaces of a joint."""
+CLASSIC_SYSTEM = "gazebo_ros2_control/GazeboSystem"
+"""The hardware plugin of ros2_control in Gazebo Classic."""
 MANAGERS = {
-    "gazebo_ros2_control/GazeboSystem": "libgazebo_ros2_control.so",
+    CLASSIC_SYSTEM: "libgazebo_ros2_control.so",
     "gz_ros2_control/GazeboSimSystem": "gz_ros2_control-system",
     "ign_ros2_control/IgnitionSystem": "ign_ros2_control-system",
 }
@@ -155,11 +157,10 @@ def simulated_systems(description: RobotDescription) -> list[Element]:
 
 def loaded_by(description: RobotDescription) -> frozenset[str]:
     """Returns the simulated hardware that the description's plugin of ros2_control loads."""
-    classic, *others = SYSTEMS
     names = [each.filename for each in description.plugins]
-    found = {classic} if any("gazebo_ros2_control" in each for each in names) else set[str]()
+    found = {CLASSIC_SYSTEM} if any("gazebo_ros2_control" in each for each in names) else set[str]()
     if any(re.search(r"(gz|ign)_ros2_control", each) for each in names):
-        found.update(others)
+        found.update(each for each in SYSTEMS if each != CLASSIC_SYSTEM)
     return frozenset(found)
 
 

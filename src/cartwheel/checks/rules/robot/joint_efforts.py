@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,6 +13,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
+from cartwheel.dialects.ros_control.interfaces import CLASSIC_SYSTEM, hardware_of, loaded_by
 from cartwheel.errors import Diagnostic
 
 _GRAVITY = 9.8
@@ -19,12 +21,16 @@ _GRAVITY = 9.8
 _LEAST_EFFORT = 10.0
 _CREEPING, _CREEPING_SLIDE = 0.1, 0.01
 """Highest speed, rad/s and m/s, below which a joint hardly moves."""
+_GAIN = re.compile(r"(pos|vel)_k[pid]$")
+"""The gains of a joint's PID in ``<ros2_control>``."""
 
 
 @rule(robot_codes.EFFORT_ZERO)
 def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
     yield from _torque_zero(subject)
-    movers = {name: robot for robot in subject.robots for name in robot.driven}
+    movers = {
+        name: robot for robot in subject.robots for name in robot.driven - _without_motor(robot)
+    }
     for joint, kind in joints_with_types(subject):
         limit = nodes.child(joint, "limit")
         name = nodes.name_of(joint)
@@ -79,6 +85,28 @@ def damping_too_high(subject: Subject) -> Iterator[Diagnostic]:
                 origin=joint.origin,
                 hint="Decrease the damping, or increase the effort limit to that of the motor.",
             )
+
+
+def _without_motor(robot: Robot) -> set[str]:
+    """The joints that gazebo_ros2_control moves without an effort: it sets their positions and
+    velocities, whatever their limits. With a PID, it applies efforts.
+
+    Source: `GazeboSystem::write`.
+    """
+    if loaded_by(robot.description) != {CLASSIC_SYSTEM}:
+        return set()
+    moved, by_effort = set[str](), {name for drive in robot.drives for name in drive.joints}
+    for system in robot.description.ros2_control:
+        if hardware_of(system) != CLASSIC_SYSTEM:
+            continue
+        for joint in system.find_all("joint"):
+            commands = {each.attribute("name") for each in joint.find_all("command_interface")}
+            by_pid = any(
+                _GAIN.match(each.attribute("name") or "") for each in joint.find_all("param")
+            )
+            free = bool(commands) and commands <= {"position", "velocity"} and not by_pid
+            (moved if free else by_effort).add((joint.attribute("name") or "").strip())
+    return moved - by_effort
 
 
 def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
