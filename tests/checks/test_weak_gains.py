@@ -156,6 +156,35 @@ def upright(dynamics: str = '<dynamics damping="2"/>') -> str:
     return arm.replace("</joint>", f"{dynamics}</joint>", 1)
 
 
+@pytest.mark.parametrize(
+    ("p", "friction", "reported"), [(15.0, 0.0, True), (25.0, 0.0, False), (15.0, 1.5, False)]
+)
+@pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
+def test_a_gain_that_lets_a_load_tip_beyond_its_target_is_reported(
+    *, tmp_path, p, friction, reported, gz
+):
+    """Gravity pushes 2 kg 0.5 m above the joint with 9.8 N m/rad: 0.2 rad becomes 0.2 p / (p -
+    9.8), less the friction's part. The other gain is well above the least.
+    """
+    path = tmp_path / "arm.urdf"
+    plugin = GZ.format(p=p, i=0.0) if gz else ROS1
+    body = upright(f'<dynamics friction="{friction}" damping="2"/>')
+    path.write_text(robot(body + transmission("beam_joint", "Effort"), plugin))
+    (tmp_path / "move.yaml").write_text(FILE.format(p=p, i=0.0))
+    files = () if gz else (tmp_path / "move.yaml",)
+    findings = check(path, controller_files=files).findings
+    found = [each for each in findings if each.code is CONTROLLER_GAIN_TOO_LOW]
+    assert [each.values["upright"] for each in found] == [pytest.approx(9.8)] * reported
+    verdict = try_robot(path, standing=1.0, controllers=files)
+    (reach,) = verdict.reaches
+    if not friction:
+        # Where p (a - 0.2) = 9.8 sin(a).
+        assert p * (reach.reached - reach.target) == pytest.approx(
+            9.8 * math.sin(reach.reached), rel=0.03
+        )
+    assert [each.code for each in verdict.faults] == [CONTROLLER_GAIN_TOO_LOW] * reported
+
+
 @pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
 def test_an_integral_does_not_hold_a_load_up(tmp_path, gz):
     """``J s³ + d s² + (p - C) s + i`` has a root with a positive real part if p is below C."""

@@ -28,6 +28,8 @@ _HANGING = math.pi / 6
 """Angle from where a load hangs within which gravity acts like a spring, rad."""
 _LIFTS = 0.2
 """Smallest part of its target to which a joint has to move."""
+_OVERSHOOTS = 2.0
+"""Multiple of its target beyond which a joint does not follow."""
 SLOW = 5.0
 """Time after which an integral counts as too slow, s."""
 
@@ -65,6 +67,7 @@ def gain_too_low(
         if load is not None and gain > 0.0 and not joint.axis.spring_stiffness:
             yield from _hangs(stated, *load)
             yield from _drops(stated, *load)
+            yield from _tips(robot, stated)
     if not of_velocity:
         yield from _falls_over(robot, stated)
 
@@ -100,6 +103,29 @@ def upright_stiffness(robot: Robot, joint: Joint) -> float:
     if joint.axis.friction >= stiffness:
         return 0.0
     return max(0.0, stiffness - joint.axis.spring_stiffness)
+
+
+def following_gain(robot: Robot, joint: Joint) -> float:
+    """The proportional gain below which a joint with its load above it does not follow its targets,
+    N m/rad.
+
+    At a small angle a from the upright position, gravity pushes the load further with C a (see
+    `upright_stiffness`), so that a gain p holds a target t at t p / (p - C). Friction F, against
+    the motion, lets it stop at (t p - F) / (p - C).
+
+    Args:
+        robot: The robot.
+        joint: One of its joints.
+
+    Returns:
+        At least `upright_stiffness`, which is 0 if the load is not above the joint.
+    """
+    stiffness = upright_stiffness(robot, joint)
+    found = _pendulum(robot, joint)
+    if found is None or abs(found[0]) > _HANGING:
+        return stiffness
+    friction = joint.axis.friction / ANGLE
+    return max(stiffness, (_OVERSHOOTS * stiffness - friction) / (_OVERSHOOTS - 1.0))
 
 
 def _pendulum(robot: Robot, joint: Joint) -> tuple[float, float] | None:
@@ -227,6 +253,23 @@ def _hangs(stated: _Stated, left: float, stiffness: float) -> Iterator[Diagnosti
         f"{stiffness:.3g} N m per rad, so it moves to {100 * part:.2g} % of its target",
         stiffness,
         hanging=stiffness,
+    )
+
+
+def _tips(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
+    """The finding that a gain holds up a load above its joint, but lets it tip far beyond each
+    target.
+    """
+    joint, gain = stated.joint, stated.gain
+    least = upright_stiffness(robot, joint)
+    if not least < gain < following_gain(robot, joint):
+        return
+    yield from stated.too_low(
+        f'lets the load above joint "{joint.name}" tip: near the upright position, gravity pushes '
+        f"it further with {least:.3g} N m per rad, so it moves to "
+        f"{100 * gain / (gain - least):.0f} % of its target",
+        least,
+        upright=least,
     )
 
 

@@ -7,7 +7,7 @@ import time
 from collections.abc import Mapping, Sequence
 
 from cartwheel.api import Model, World
-from cartwheel.checks.gains import span, upright_stiffness
+from cartwheel.checks.gains import following_gain, span
 from cartwheel.checks.resting import starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
@@ -111,11 +111,11 @@ def reaches(
     joints = {joint.name: joint for joint in description.joints}
     body = Robot(description, None)
     fast = commanded_speeds(started)
-    # A joint that falls over does not sag by a small angle.
+    # A joint that falls over, or that tips far beyond its target, does not sag by a small angle.
     gains = {
         name: gain
         for name, gain in gains.items()
-        if name not in joints or name in fast or gain >= upright_stiffness(body, joints[name])
+        if name not in joints or name in fast or gain >= following_gain(body, joints[name])
     }
     commanded = [joints[name] for taker in takers for name in taker.joints]
     targets = _targets(world, model, commanded)
