@@ -57,6 +57,32 @@ def test_a_balanced_robot_that_an_arm_tips_over_has_a_joint_that_nothing_drives(
     assert (fault.code, fault.source) == (JOINTS_UNDRIVEN, "file")
 
 
+@pytest.mark.parametrize("kind", ["continuous", "revolute"])
+@pytest.mark.parametrize(("places", "stands"), [("0 0.2", False), ("-0.2 0.2 0", True)])
+def test_a_robot_on_a_single_wheel_falls_over(tried, places, stands, kind):
+    """A wheel in the middle below the body; the other one on top of it, or three apart."""
+    body = LINK.format(name="body", at="0.005 0 0.2", mass=5, size="0.5 0.3 0.1")
+    sensor = '<gazebo reference="body"><sensor name="imu" type="imu"/></gazebo>'
+    wheels = []
+    for index, place in enumerate(places.split()):
+        at = f"{place} {0.2 * index} 0.1" if stands else f"0 0 {0.1 + float(place)}"
+        wheel = LINK.format(name=f"wheel{index}", at="0 0 0", mass=1, size="0 0 0")
+        wheels += [
+            wheel.replace('<box size="0 0 0"/>', '<cylinder radius="0.1" length="0.04"/>').replace(
+                '<collision><origin xyz="0 0 0"/>', '<collision><origin rpy="1.5708 0 0"/>'
+            ),
+            JOINT.format(
+                name=f"wheel{index}", kind=kind, parent="body", at=at, lower=-1e16, upper=1e16
+            ),
+        ]
+    verdict = tried(body, *wheels, sensor)
+    if not stands:
+        fault = stand_of(verdict)
+        assert (fault.code, fault.source) == (UNBALANCED, "file")
+    found = [each for each in verdict.faults if each.code is JOINTS_UNDRIVEN]
+    assert not found or stands
+
+
 def legged(lower, upper):
     """A body on two legs, each with a flat foot, and motors that hold the joints at the start."""
     yield LINK.format(name="body", at="0 0 0", mass=3, size="0.1 0.4 0.1")

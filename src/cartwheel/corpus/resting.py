@@ -167,12 +167,12 @@ def gave_way(
         )
         yield robot_codes.JOINTS_UNDRIVEN.diagnostic(
             f"{why}, so the robot rolls"
-            if robot.joints[most].turns
+            if rolls and robot.joints[most].turns
             else f'{why}, so they give way: "{most}" moved by {found[most]:.2g} '
             f"{'m' if robot.joints[most].type == 'prismatic' else 'rad'}",
             values={
                 "joints": tuple(found),
-                **({} if robot.joints[most].turns else {"moved": found[most]}),
+                **({} if rolls and robot.joints[most].turns else {"moved": found[most]}),
             },
             origin=robot.joints[most].origin,
             hint=f'Command "{waiting[most]}" and the others at the start.' if wait else "",
@@ -294,6 +294,13 @@ def _rolls(world: World, model: Model, robot: Robot, link: str, slack: float) ->
         return False
     motor = motors.get(joint.name)
     if motor is not None and (motor.mode != "servo" or held_by(world, model, joint.name) > slack):
+        return False
+    return _is_wheel(robot, joint)
+
+
+def _is_wheel(robot: Robot, joint: Joint) -> bool:
+    """Whether a joint that turns carries something round, or nothing that touches."""
+    if not joint.turns:
         return False
     widths = wheel_widths(robot, joint, robot.collisions)
     return widths is None or bool(widths.min() >= ROUND * widths.max())

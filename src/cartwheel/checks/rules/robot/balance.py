@@ -77,7 +77,11 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
         outside = _outside(points, center, robot.size)
         if rest is not None:
             # On wheels alone, this is where the robot would balance, not where it comes to rest.
-            yield from _on_an_axle(robot, center, rest) or _tilted(robot, center, points, rest)
+            yield from (
+                _on_one_wheel(robot, rest)
+                or _on_an_axle(robot, center, rest)
+                or _tilted(robot, center, points, rest)
+            )
         elif outside > _MARGIN * robot.size:
             yield robot_codes.UNBALANCED.diagnostic(
                 message=f"the centre of mass is {1000 * outside:.3g} mm outside the area between "
@@ -151,6 +155,31 @@ def _topples(center: Floats, points: Floats, rest: Rest, size: float) -> bool:
     height = float(rest.normal @ center - rest.offset)
     released = float(center[2] - points[:, 2].min()) - height
     return math.hypot(height, margin) - height < _KEPT * released
+
+
+def _on_one_wheel(robot: Robot, rest: Rest) -> list[Diagnostic]:
+    """A robot that stands only on one wheel, about whose axle it turns; empty for another one."""
+    margin = _MARGIN * robot.size
+    groups = {
+        robot.rigid_root(name)
+        for name in robot.links
+        if (height := rest.height(robot, [name])) is not None and height < margin
+    }
+    joint = robot.inbound.get(next(iter(groups), ""))
+    if len(groups) > 1 or joint is None or not joint.turns:
+        return []
+    if np.linalg.norm(np.cross(wheel_axis(robot, joint), rest.normal)) < CAMBER:
+        # It stands on a turntable.
+        return []
+    return [
+        robot_codes.UNBALANCED.diagnostic(
+            message=f'the robot stands only on the wheel "{joint.child}", so it falls over, unless '
+            "a program balances it",
+            values={"outside": 0.0, "falls": True, "wheel": joint.child},
+            origin=joint.origin,
+            hint="Check the places of the wheels, or start the program that balances the robot.",
+        )
+    ]
 
 
 def _on_an_axle(robot: Robot, center: Floats, rest: Rest | None) -> list[Diagnostic]:
