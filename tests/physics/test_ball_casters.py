@@ -123,3 +123,12 @@ def test_a_base_drives_while_the_inner_axle_is_upright(make, axles):
     world.run(0.5)
     speed, rate, _ = driven(world, 0.2, 0.0, seconds=2.0)
     assert (speed, rate) == (pytest.approx(0.2, rel=0.01), pytest.approx(0.0, abs=2e-3))
+
+
+@pytest.mark.parametrize("lower", [0.0, 0.02])
+def test_a_ball_that_cannot_roll_and_is_too_low_does_not_slow_a_base(make, lower):
+    """A ball that turns only about the vertical slides. The wheels do not slip, however low."""
+    ball = part("ball", "base", "0 0 1", f"{0.1 - BEHIND} 0 {RADIUS - 0.1 - lower}", ball=True)
+    speed, _, slip = driven(cart(make, ball), 0.2, 0.0, seconds=2.0)
+    assert speed == pytest.approx(0.2, rel=0.01)
+    assert slip == pytest.approx(1.0, rel=0.02)

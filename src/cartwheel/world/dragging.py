@@ -88,7 +88,7 @@ def _without_misaligned(
         if each.tread is not None and _is_misaligned(each.tread, wheels):
             across.setdefault(each.model, []).append(each.tread)
             each = replace(each, rolls=False, tread=None, bottom=each.tread.bottom)  # noqa: PLW2901
-        elif each.low is not None and _is_level(each.low, wheels):
+        elif each.low is not None and _touches(each.low, wheels):
             each = replace(each, rolls=False, bottom=each.low)  # noqa: PLW2901
         made.append(each)
     twins = (each for each in made if _is_at_one(each.tread, across.get(each.model, ())))
@@ -102,9 +102,9 @@ def _is_at_one(tread: Tread | None, others: Sequence[Tread]) -> bool:
     return any(math.dist(tread.centre, each.centre) < _NEAR * each.radius for each in others)
 
 
-def _is_level(bottom: float, treads: Sequence[Tread]) -> bool:
-    """Whether a part is about as low as wheels."""
-    return any(abs(bottom - each.bottom) < _NEAR * each.radius for each in treads)
+def _touches(bottom: float, treads: Sequence[Tread]) -> bool:
+    """Whether a part is about as low as wheels, or lower, so that the robot tilts onto it."""
+    return any(bottom - each.bottom < _NEAR * each.radius for each in treads)
 
 
 def _is_misaligned(tread: Tread, driven: Sequence[Tread]) -> bool:
