@@ -28,6 +28,7 @@ from cartwheel.description.launches import (
     chosen,
     needs_expansion,
     unexpanded,
+    unread,
 )
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -97,6 +98,8 @@ def check(
             [
                 *passed(subject),
                 *(one for each in RULES for one in each.apply(subject)),
+                # The last, because rules search for launch files.
+                *subject.find_unread(),
             ]
         )
     order = {file: index for index, file in enumerate(subject.files)}
@@ -134,7 +137,12 @@ def _subject(
     robots = tuple(
         Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
     )
-    search = launches or LaunchSearch(opened.packages.package_path).of
+    find = launches or LaunchSearch(opened.packages.package_path).of
+    found: dict[Path, OwnLaunches] = {}
+
+    def search(description: Path) -> OwnLaunches:
+        return found.setdefault(description, find(description))
+
     control, launched = controller_files_of(robots, opened.packages, given, search)
     file = Path(opened.files[0])
     plain = unexpanded(file, search(file).launches) if needs_expansion(file) else ()
@@ -151,6 +159,7 @@ def _subject(
         unexpanded=tuple(plain),
         arguments=opened.arguments,
         find_launch=lambda: chosen(file, search(file).launches),
+        find_unread=lambda: unread(each for own in found.values() for each in own.launches),
     )
     for robot in robots:
         robot.controlled = controlled_sides(subject, robot)

@@ -53,6 +53,8 @@ class Subject:
     """Arguments of the xacro, including defaults."""
     find_launch: Callable[[], LaunchUse | None] = lambda: None
     """Returns the launch file that starts the description."""
+    find_unread: Callable[[], Sequence[Diagnostic]] = tuple
+    """Returns what was not read of the launch files that were searched."""
 
     @property
     def is_urdf(self) -> bool:

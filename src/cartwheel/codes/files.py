@@ -119,7 +119,7 @@ LAUNCH_VALUE_UNKNOWN = Code(
     "CW164",
     "launch-value-unknown",
     "warning",
-    "a value in a launch file is unknown, or a file in it was not found",
+    "a value in a launch file is unknown, a file in it was not found, or it takes too long to read",
 )
 LAUNCH_WORLD_ABSENT = Code(
     "CW165",

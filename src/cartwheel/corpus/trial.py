@@ -42,6 +42,7 @@ from cartwheel.description.launches import (
     launches_near,
     own_launches,
     unexpanded,
+    unread,
 )
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -93,7 +94,7 @@ def try_robot(
     own = find(file)
     launches = own.launches
     use = chosen(file, launches)
-    verdict = replace(verdict, launch=use)
+    verdict = replace(verdict, launch=use, unread=unread(launches))
     given = dict(arguments or {})
     arguments = {**(use.arguments if use is not None else {}), **given}
     try:

@@ -282,6 +282,8 @@ class Verdict:
     drives the joints."""
     observed: tuple[Diagnostic, ...] = ()
     """Reasons for failures that were seen in the simulation, or in the files of launch files."""
+    unread: tuple[Diagnostic, ...] = ()
+    """What was not read of the launch files of the robot's author."""
 
     @property
     def speed(self) -> float:

@@ -135,7 +135,7 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
             for each in verdict.reaches
         ],
         "speed": _number(verdict.speed),
-        "diagnostics": [str(each) for each in verdict.diagnostics],
+        "diagnostics": [str(each) for each in (*verdict.diagnostics, *verdict.unread)],
     }  # fmt: skip
 
 
@@ -256,6 +256,11 @@ def _show(
         for name in missing:
             users = sum(name in verdict.missing for verdict in verdicts)
             say(f"missing plugin {name}: {users} robot{'s' if users != 1 else ''}")
+    unread = dict.fromkeys(each for verdict in verdicts for each in verdict.unread)
+    if unread:
+        say()
+        for each in unread:
+            say(str(each))
     say(f"\n{_summary(verdicts)}")
     if skipped:
         say(f"skipped: {_counted(skipped)}")

@@ -1,6 +1,6 @@
 """Reads launch files: the descriptions, xacro arguments and controller files that they name."""
 
-from cartwheel.description.launches.launch_use import LaunchUse
+from cartwheel.description.launches.launch_use import LaunchUse, unread
 from cartwheel.description.launches.own import (
     LaunchSearch,
     OwnLaunches,
@@ -39,4 +39,5 @@ __all__ = [
     "shared_parts",
     "starters",
     "unexpanded",
+    "unread",
 ]

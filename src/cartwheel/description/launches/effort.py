@@ -47,7 +47,7 @@ class Effort:
     def portion(self) -> Iterator[None]:
         """Limits the block, which reads a launch file, to half of what remains.
 
-        If it costs more, it ends without an error, and other launch files can still be read.
+        If it costs more, it ends early without an error, and other launch files can still be read.
 
         Raises:
             TooCostlyError: Nothing remains.

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from cartwheel.errors import Origin
+from cartwheel.errors import Diagnostic, Origin
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,6 +65,14 @@ class LaunchUse:
     """The names that it gives to the models that it spawns."""
     spaces: frozenset[str] = frozenset()
     """The namespaces in which it spawns models; `UNKNOWN` is among them if one is uncertain."""
+    left_out: Diagnostic | None = None
+    """Why not all of the launch file, or of the launch files in the folder `file`, was read. There
+    is then nothing else in it."""
+
+
+def unread(launches: Iterable[LaunchUse]) -> tuple[Diagnostic, ...]:
+    """Why some launch files, or parts of them, were not read."""
+    return tuple(each.left_out for each in launches if each.left_out is not None)
 
 
 def only_loaded(loaded: Iterable[str], spawned: Collection[str]) -> tuple[str, ...]:

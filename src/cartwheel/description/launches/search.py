@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from cartwheel.codes.files import LAUNCH_VALUE_UNKNOWN
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.package_search import Searched
 from cartwheel.description.files.packages import Packages
@@ -20,12 +21,13 @@ from cartwheel.description.launches.python_variables import Place
 from cartwheel.description.launches.use import Facts
 from cartwheel.description.launches.variants import beside
 from cartwheel.description.launches.xml_launch import read_xml
+from cartwheel.errors import Origin
 
 _FOLDER = 100
 """Steps to list a folder."""
 _MOST = 500
 """Maximum number of launch files in a folder."""
-_INCLUDES = 60
+INCLUDES = 60
 """Maximum number of files that a launch file may include, also indirectly."""
 _VARIANTS = 20
 """Maximum number of other values of its arguments with which a launch file is read."""
@@ -40,33 +42,52 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
 
     A launch file that starts controllers for a robot of another launch file is one of them, without
     a description. Launch files are parsed, not executed. Texts that cannot be determined without
-    executing them are left out, and so are launch files that cost too much to read.
+    executing them are left out. What costs too much to read is left out too, and reported in
+    `left_out` of the launch file or folder.
     """
     found: list[LaunchUse] = []
-    with contextlib.suppress(TooCostlyError):  # there are too many folders
-        for each in _near(folder, package_path, Effort()):
-            found.append(each)  # noqa: PERF402 - those before an error count
-    return tuple(found)
-
-
-def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterator[LaunchUse]:
     # Which package is found depends on the folder of the launch file.
     packages: dict[Path, Packages] = {}
     searched: Searched = {}
-    for path in _files(folder, effort):
-        near = packages.get(path.parent) or Packages(path, package_path, searched=searched)
-        packages[path.parent] = near
-        found: list[LaunchUse] = []
-        with effort.portion():
-            for each in _uses(path, near, effort):
-                found.append(each)  # noqa: PERF402 - those before an error count
-        yield from found
+    effort = Effort()
+    last = "none of them is"
+    try:
+        for number, path in enumerate(_files(folder, effort)):
+            if number == _MOST:
+                found.append(_left_out(folder, f"there are more than {_MOST} launch files", last))
+                break
+            near = packages.get(path.parent) or Packages(path, package_path, searched=searched)
+            packages[path.parent] = near
+            found += _read_apart(path, near, effort)
+            last = f'only those up to "{path.relative_to(folder)}" are'
+    except TooCostlyError:
+        found.append(_left_out(folder, "reading all launch files takes too long", last))
+    return tuple(found)
+
+
+def _read_apart(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]:
+    """What a launch file starts, as far as it can be read with a part of the effort."""
+    with effort.portion():
+        yield from _uses(path, packages, effort)
+        return
+    yield _left_out(path, "reading the launch file takes too long", "not all of it is")
+
+
+def _left_out(path: Path, why: str, what: str) -> LaunchUse:
+    left_out = LAUNCH_VALUE_UNKNOWN.diagnostic(
+        f"{why}, so {what} read",
+        origin=Origin(file=shown_path(path)),
+        values={"what": "launch file"},
+    )
+    return LaunchUse(file=path, description=None, arguments={}, left_out=left_out)
 
 
 def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]:
     """What a launch file starts, also with other values of its arguments."""
     facts = facts_of(path, packages, {}, effort)
     yield from uses_of(path, facts)
+    if facts.count > INCLUDES:
+        yield _left_out(path, f"the launch file includes more than {INCLUDES} files", "not all are")
     known = {description for description, _ in facts.descriptions}
     for given in _others(facts):
         other = facts_of(path, packages, given, effort)
@@ -226,15 +247,9 @@ def shared_parts(one: Path, other: Path) -> int:
 
 
 def _files(folder: Path, effort: Effort) -> Iterator[Path]:
-    count = 0
     for here, names in source_folders(folder):
         effort.spend(_FOLDER + len(names))
-        for name in names:
-            if _is_launch(here / name):
-                count += 1
-                if count > _MOST:
-                    return
-                yield here / name
+        yield from (here / name for name in names if _is_launch(here / name))
 
 
 def _is_launch(path: Path) -> bool:
@@ -246,7 +261,7 @@ def _is_launch(path: Path) -> bool:
 
 def _read(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
     facts.count += 1
-    if facts.count > _INCLUDES:
+    if facts.count > INCLUDES:
         return
     reader = read_python if path.suffix == ".py" else read_xml
     reader(path, arguments, facts, depth)

@@ -20,7 +20,7 @@ from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.python_variables import Place
-from cartwheel.description.launches.search import facts_of, uses_of
+from cartwheel.description.launches.search import INCLUDES, facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
 from cartwheel.description.launches.unexpanded import not_expanded
 from cartwheel.description.launches.use import ABSENT, Facts
@@ -229,6 +229,9 @@ def _unknown(
             name=name,
             used=str(each.used),
         )
+    if facts.count > INCLUDES:
+        text = f"the launch file includes more than {INCLUDES} files, so not all are read"
+        yield _lost(file, text, what="launch file")
     for name in facts.lost_bridges:
         yield _lost(
             file,

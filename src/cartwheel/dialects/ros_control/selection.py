@@ -23,6 +23,7 @@ from cartwheel.description.launches import (
     root_of,
     shared_parts,
     starters,
+    unread,
 )
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.files import for_robot, read_parameters
@@ -90,9 +91,11 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     if not suggested(robot) and not suggested(robot, among=loaded):
         problems = (*unfound(starter), *undefined(robot, starter), *only_loaded(starter))
         idle = () if starter is None else as_named(starter.loaded, ())
-        return Selection(files=(), names=(), idle=idle, problems=problems)
-    # The user need not start this launch file, and here, the controllers work.
-    return selection(robot, use, launches, tolerant=True)
+        found = Selection(files=(), names=(), idle=idle, problems=problems)
+    else:
+        # The user need not start this launch file, and here, the controllers work.
+        found = selection(robot, use, launches, tolerant=True)
+    return replace(found, problems=(*found.problems, *unread(launches)))
 
 
 def launched(robot: RobotDescription) -> tuple[str, ...]:
