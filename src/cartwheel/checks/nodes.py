@@ -32,7 +32,9 @@ def walk(node: Node) -> Iterator[Node]:
 
 def copy(node: Node) -> Node:
     """A copy of a tree; the origins are shared."""
-    return Node(node.tag, node.attributes, node.origin, map(copy, node.children), node.text)
+    made = Node(node.tag, node.attributes, node.origin, map(copy, node.children), node.text)
+    made.notes = node.notes
+    return made
 
 
 def name_of(node: Node) -> str:

@@ -304,18 +304,23 @@ def test_plugins_in_an_unread_element_are_named(plugins, end):
 
 @pytest.mark.parametrize("encode", [str, str.encode])
 @pytest.mark.parametrize(
-    ("head", "line"),
+    ("head", "line", "reported"),
     [
-        ('?xml version="1.0"?>\n', 2),
-        ("left over\n<!-- a > b -->\n<?xml version='1.0'?>\n", 4),
-        ("<?xml version='1.0'?>\n--> \n", 3),
-        ("\ufeff<?xml version='1.0' encoding='UTF-8'?>\n", 2),
+        ('?xml version="1.0"?>\n', 2, (1, '?xml version="1.0"?>')),
+        ("<!-- a -->\nleft\n<!-- a > b -->\n<?xml version='1.0'?>\n", 5, (2, "left")),
+        ("<?xml version='1.0'?>\n--> ", 2, (2, "-->")),
+        (f"{'x ' * 1000}\n", 2, (1, "x " * 29 + "x")),
+        ("\ufeff<?xml version='1.0' encoding='UTF-8'?>\n", 2, None),
+        ("\n", 2, None),
     ],
 )
-def test_text_before_the_root_of_an_sdf_file_is_ignored_as_in_gazebo(encode, head, line):
+def test_text_before_the_root_of_an_sdf_file_is_ignored_as_in_gazebo(encode, head, line, reported):
     root = xml.parse(encode(head + "<sdf version='1.6'>\n<model name='ü'/></sdf>"), "a.sdf")
     assert (root.origin.line, root.children[0].origin.line) == (line, line + 1)
     assert root.children[0].attributes == {"name": "ü"}
+    found = [(each.origin.line, each.values["text"]) for each in root.notes]
+    assert found == ([] if reported is None else [reported])
+    assert all(each.code is tags.TAG_IGNORED for each in root.notes)
 
 
 @pytest.mark.parametrize(

@@ -7,16 +7,19 @@ their prefixes as written, as Gazebo's own reader does.
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Protocol
 from xml.parsers import expat
 
 from cartwheel.codes import files as codes
+from cartwheel.codes import tags
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.node import Node, copied, needs_xacro, to_element
 from cartwheel.description.elements.unread import unread
-from cartwheel.errors import DescriptionError, Origin, Value
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
 
 __all__ = [
     "Handler", "Node", "copied", "near_files", "needs_xacro", "parse", "read_bytes", "read_file",
@@ -41,6 +44,8 @@ _HEAD_TEXT = re.compile(r"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\ufeff)|[^<\s]++", re
 _HEAD_TEXT_BYTES = re.compile(
     rb"(<!--.*?-->|<\?.*?\?>|<![^>]*>|\A\xef\xbb\xbf)|[^<\s]++", re.DOTALL
 )
+_SHOWN = 60
+"""Maximum number of characters of an ignored text that are shown."""
 MAX_DEPTH = 100
 """Deeper nesting indicates a damaged file, and would exceed Python's recursion limit."""
 
@@ -128,8 +133,11 @@ def parse(text: str | bytes, file: str = "<string>") -> Node:
             entities, which robots do not need and which can expand without limit.
     """
     builder = _Builder(file)
-    run_expat(_without_head_text(text), file, builder)
+    plain = _without_head_text(text)
+    run_expat(plain, file, builder)
     assert builder.root is not None
+    if plain != text:
+        builder.root.notes = tuple(_head_text_ignored(text, builder.root))
     return builder.root
 
 
@@ -254,6 +262,23 @@ def _without_head_text(text: str | bytes) -> str | bytes:
             lambda head: _HEAD_TEXT_BYTES.sub(lambda each: each[1] or b" ", head[0]), text
         )
     return _HEAD.sub(lambda head: _HEAD_TEXT.sub(lambda each: each[1] or " ", head[0]), text)
+
+
+def _head_text_ignored(text: str | bytes, root: Node) -> Iterator[Diagnostic]:
+    """A warning about the text that `_without_head_text` removed, at its first line."""
+    if isinstance(text, bytes):
+        text = text.decode("utf-8", "replace")
+    head = _HEAD.match(text)
+    first = (each for each in _HEAD_TEXT.finditer(head[0]) if not each[1]) if head else ()
+    for each in itertools.islice(first, 1):
+        line = text.count("\n", 0, each.start()) + 1
+        shown = text[each.start() : head.end() if head else None].partition("\n")[0][:_SHOWN]
+        yield tags.TAG_IGNORED.diagnostic(
+            f'the text "{shown.strip()}" before <{root.tag}> is ignored',
+            origin=Origin(file=root.origin.file, line=line),
+            hint="Delete it, because other programs do not read such a file.",
+            values={"tag": root.tag, "text": shown.strip()},
+        )
 
 
 def _declared_first(text: str | bytes) -> str | bytes:
