@@ -21,6 +21,7 @@ from cartwheel.codes import codes_of
 from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
 from cartwheel.codes.tags import DEFAULT_USED
+from cartwheel.codes.world import PHYSICS_SETTING_IGNORED, PLANE_NOT_STATIC
 from cartwheel.description.elements.node import Node
 from cartwheel.description.launches import (
     LaunchSearch,
@@ -38,6 +39,8 @@ REPORTED = (
     *(code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)),
     CONTROLLER_NOT_STARTED,
     JOINT_DRIVEN_TWICE,
+    PLANE_NOT_STATIC,
+    PHYSICS_SETTING_IGNORED,
 )
 """Every code that a check can report, from the rules and from the description readers."""
 MAX_FAILURES = 30

@@ -49,6 +49,7 @@ from cartwheel.checks.rules.robot import (
     overlapping_collisions,
     references,
     shape_scale,
+    unsimulated,
     wrong_units,
 )
 from cartwheel.checks.rules.tags import ignored_by_gazebo, misplaced_tags
@@ -127,6 +128,7 @@ RULES: tuple[Rule, ...] = tuple(
         package_uris,
         shape_scale,
         wrong_units,
+        unsimulated,
         ignored_by_gazebo,
         misplaced_tags,
         unused_definitions,
