@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import cast
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from cartwheel.description.solids import as_collision, bounds
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose, Vec3
 
+_PLACE = ("xyz", "rpy")
 LIGHT = 0.01
 """Fraction of the robot's mass below which a link's mass hardly matters, and is often arbitrary."""
 
@@ -35,6 +37,27 @@ def moments_of(inertial: Node) -> Vec3 | None:
     return principal_moments(
         (found["ixx"], found["iyy"], found["izz"]), (found["ixy"], found["ixz"], found["iyz"])
     )
+
+
+def stated_inertials(subject: Subject) -> Iterator[tuple[str, Inertial]]:
+    """The inertias of a URDF as written, by link, without those that are not numbers."""
+    for link, inertial in inertials(subject):
+        tensor, place = nodes.child(inertial, "inertia"), nodes.child(inertial, "origin")
+        mass = nodes.number(nodes.text_of(nodes.child(inertial, "mass"), "value"))
+        found = [nodes.number(nodes.text_of(tensor, key) or "0") for key in MOMENTS]
+        xyz, rpy = (nodes.numbers(nodes.text_of(place, key) or "0 0 0", 3) for key in _PLACE)
+        moments = [value for value in found if value is not None]
+        if mass is None or mass <= 0 or len(moments) < len(found) or not (xyz and rpy):
+            continue
+        yield (
+            nodes.name_of(link),
+            Inertial(
+                mass=mass,
+                pose=Pose.from_xyz_rpy(cast(Vec3, xyz), cast(Vec3, rpy)),
+                origin=inertial.origin,
+                **dict(zip(MOMENTS, moments, strict=True)),
+            ),
+        )
 
 
 def inertials(subject: Subject) -> Iterator[tuple[Node, Node]]:

@@ -173,6 +173,19 @@ class Robot:
             link = parent
         return link
 
+    def merged_root(self, link: str) -> str:
+        """The link into which Gazebo merges a link of a URDF; the link itself if it remains."""
+        seen = {link}
+        while link in self.inbound:
+            joint = self.inbound[link]
+            if joint.type != "fixed" or joint.preserve_fixed or joint.parent not in self.links:
+                break
+            if joint.parent in seen:
+                break
+            link = joint.parent
+            seen.add(link)
+        return link
+
     def carrying(self, links: Iterable[str]) -> set[str]:
         """Names of the joints between the root link and some links, which are moving joints."""
         found: set[str] = set()

@@ -13,6 +13,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
+from cartwheel.description.elements.simulator import Simulator, simulator_of
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.launches import LaunchUse
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -60,6 +61,11 @@ class Subject:
     def is_urdf(self) -> bool:
         """Whether it is a URDF or a xacro that produces one."""
         return self.root.tag == "robot"
+
+    @cached_property
+    def simulator(self) -> Simulator:
+        """The version of Gazebo that the plugins are for; empty for none or both."""
+        return simulator_of(self.root)
 
     def in_sdf(self, origin: Origin | None) -> bool:
         """Whether the element with this origin is written in SDF."""

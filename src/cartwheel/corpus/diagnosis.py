@@ -150,6 +150,7 @@ def _load_faults(
         _unloaded(verdict, description),
         coded(description.diagnostics, _UNLIMITED),
         _material_twice(description),
+        _refused(description),
         coded(verdict.observed, _NOT_EXPANDED),
     )
     for reason in reasons:
@@ -204,6 +205,18 @@ def _dropped(verdict: Verdict, description: RobotDescription) -> Iterator[tuple[
             if joint.name in verdict.driven and joint.child in lost:
                 yield joint.name, each
                 return
+
+
+def _refused(description: RobotDescription) -> Diagnostic | None:
+    """An inertia for which gz-sim does not load a robot that is for gz-sim only."""
+    return next(
+        (
+            each
+            for each in description.diagnostics
+            if each.code is robot.INERTIA_IMPOSSIBLE and each.values.get("refused") is True
+        ),
+        None,
+    )
 
 
 def _material_twice(description: RobotDescription) -> Diagnostic | None:

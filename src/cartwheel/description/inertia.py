@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from cartwheel.geometry import Array, Vec3
+from cartwheel.description.model import Inertial
+from cartwheel.geometry import Array, Pose, Vec3, matrix_from_quat
 
 TOLERANCE = 1e-3
 """Relative tolerance: files contain three or four digits, and thin plates are exactly at the limit.
 """
+REFUSES = "gz-sim does not load such a robot"
+TOLERANCE_OF_GZ = 1e-5
+"""The same for gz-sim, which accepts only rounding errors. URDFs are converted with six digits."""
 LIGHTEST = 1e-12
 """Minimum mass of a link with an inertia, kg; the engine rejects smaller masses, and Gazebo ignores
 links in a URDF with less than 1e-6 kg."""
@@ -63,19 +68,72 @@ def principal_moments(diagonal: Vec3, products: Vec3) -> Vec3:
     return (smallest, 3 * mean - largest - smallest, largest)
 
 
-def impossibility(moments: Vec3) -> tuple[str, str] | None:
-    """Why no body can have these principal moments, and a hint; None if they are possible."""
+def is_refused(moments: Vec3) -> bool:
+    """Whether gz-sim does not load a model with a link with these principal moments.
+
+    As `gz::math::MassMatrix3::IsValid`: moments of 0 are accepted.
+    """
     a, b, c = moments
-    shown = f"{a:.4g}, {b:.4g} and {c:.4g} kg m²"
+    return a < -TOLERANCE_OF_GZ * abs(c) or a + b < c * (1 - TOLERANCE_OF_GZ)
+
+
+def combined(parts: Iterable[tuple[Pose, Inertial]]) -> tuple[float, Array, Array]:
+    """The inertia of bodies that are fixed to each other.
+
+    Args:
+        parts: Inertias, each with the pose of its link.
+
+    Returns:
+        The mass in kg, the centre of mass in m, and the inertia matrix about it in kg m², in the
+        axes in which the poses are.
+    """
+    placed = [(pose @ each.pose, each) for pose, each in parts]
+    mass = sum(each.mass for _, each in placed)
+    centre = sum((each.mass * np.array(pose.position) for pose, each in placed), np.zeros(3))
+    centre = centre / max(mass, LIGHTEST)
+    total = np.zeros((3, 3))
+    for pose, each in placed:
+        turn = matrix_from_quat(pose.orientation)
+        arm = np.array(pose.position) - centre
+        total += turn @ tensor(each.diagonal, each.products) @ turn.T
+        total += each.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return mass, centre, total
+
+
+def refused_groups(groups: Iterable[Mapping[str, tuple[Pose, Inertial]]]) -> frozenset[str]:
+    """The links that gz-sim merges into ones that it refuses; see `is_refused`.
+
+    Args:
+        groups: The inertias of each group of merged links, and the poses of these links, by name.
+    """
+    refused: set[str] = set()
+    for group in groups:
+        _, _, matrix = combined(group.values())
+        a, b, c = np.linalg.eigvalsh(matrix).tolist()
+        if is_refused((a, b, c)):
+            refused.update(group)
+    return frozenset(refused)
+
+
+def impossibility(moments: Vec3, tolerance: float = TOLERANCE) -> tuple[str, str] | None:
+    """Why no body can have these principal moments, and a hint; None if they are possible.
+
+    Args:
+        moments: The smallest first, kg m².
+        tolerance: Relative tolerance.
+    """
+    a, b, c = moments
+    digits = 7 if c * (1 - TOLERANCE) <= a + b < c * (1 - tolerance) else 4
+    shown = f"{a:.{digits}g}, {b:.{digits}g} and {c:.{digits}g} kg m²"
     if a <= 0 or a < 1e-12 * c:
         return (
             f"the inertia is not positive definite: its principal moments are {shown}",
             "ixx, iyy and izz must be above 0, and the products of inertia must be smaller.",
         )
-    if a + b < c * (1 - TOLERANCE):
+    if a + b < c * (1 - tolerance):
         return (
             f"no rigid body can have this inertia: its principal moments are {shown}, and the "
-            f"largest exceeds the sum of the other two, {a + b:.4g}",
+            f"largest exceeds the sum of the other two, {a + b:.{digits}g}",
             "For a solid box with the sides x, y and z: ixx = mass (y² + z²) / 12, "
             "iyy = mass (x² + z²) / 12, izz = mass (x² + y²) / 12.",
         )

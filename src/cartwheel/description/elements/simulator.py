@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Literal
 
 from cartwheel.description.elements.node import Node
 
@@ -11,8 +12,12 @@ _GZ = re.compile(r"^(?:lib)?(?:gz|ign|ignition)[-_]")
 """Beginnings of the names of plugins for Gazebo Classic and for gz-sim."""
 
 
-def is_classic(root: Node) -> bool:
-    """Whether a description has plugins for Gazebo Classic, and none for gz-sim."""
+Simulator = Literal["", "classic", "gz"]
+"""Gazebo Classic or gz-sim; empty if it may be for either of them."""
+
+
+def simulator_of(root: Node) -> Simulator:
+    """The version of Gazebo that a description has plugins for; empty for none or both."""
     files, left = [], [root]
     while left:
         node = left.pop()
@@ -20,4 +25,7 @@ def is_classic(root: Node) -> bool:
             files.append(node.attributes.get("filename", "").rpartition("/")[2])
         else:
             left += node.children
-    return any(map(_CLASSIC.search, files)) and not any(map(_GZ.search, files))
+    classic, gz = any(map(_CLASSIC.search, files)), any(map(_GZ.search, files))
+    if classic == gz:
+        return ""
+    return "classic" if classic else "gz"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 from cartwheel.codes import tags as codes
 from cartwheel.codes.files import SDF_VERSION
 from cartwheel.description.elements.numbers import LARGEST, position
+from cartwheel.description.elements.simulator import Simulator, simulator_of
 from cartwheel.errors import Code, Details, Diagnostic
 from cartwheel.geometry import Pose, Quat, quat_normalize
 from cartwheel.similar_names import meant, suggestion
@@ -41,8 +42,8 @@ class Context:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     including: tuple[Path, ...] = ()
     """The chain of included files, outermost first."""
-    classic: bool = False
-    """Whether the description has plugins for Gazebo Classic, and none for gz-sim."""
+    simulator: Simulator = ""
+    """The version of Gazebo that the description is for."""
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Adds a diagnostic."""
@@ -61,6 +62,20 @@ def not_simulated(message: str, node: Node) -> Diagnostic:
         severity="warning",
         values={"tag": node.tag, **node.named},
     )
+
+
+def simulator_for(root: Node, version: Version, around: Simulator = "") -> Simulator:
+    """The version of Gazebo that an SDF document is for; empty if it may be for either of them.
+
+    Args:
+        root: Its root.
+        version: The version of SDF.
+        around: The same for the document that includes it.
+    """
+    named = around or simulator_of(root)
+    if version < NOT_CLASSIC:
+        return named
+    return "" if named == "classic" else "gz"
 
 
 def read_version(root: Node) -> Version:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cartwheel.codes import files, tags
-from cartwheel.description.elements.simulator import is_classic
 from cartwheel.description.elements.xml import Node, read_file
 from cartwheel.description.files import fuel
 from cartwheel.description.losses import loss
@@ -15,9 +14,9 @@ from cartwheel.description.model import PluginTag
 from cartwheel.description.sdf.context import (
     MAX_INCLUDES,
     MODERN,
-    NOT_CLASSIC,
     Context,
     read_version,
+    simulator_for,
 )
 from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.sensors import read_plugins
@@ -74,8 +73,8 @@ def open_include(node: Node, ctx: Context) -> Included:
     if root.tag != "robot" and version < MODERN:
         root = as_modern(root)
     including = (*ctx.including, path)
-    classic = version < NOT_CLASSIC and (ctx.classic or is_classic(root))
-    inner = Context(ctx.packages, version, ctx.diagnostics, including, classic)
+    simulator = simulator_for(root, version, ctx.simulator)
+    inner = Context(ctx.packages, version, ctx.diagnostics, including, simulator)
     name = node.child("name")
     static = node.child("static")
     return Included(

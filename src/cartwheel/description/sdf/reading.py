@@ -11,11 +11,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.codes import files, tags
-from cartwheel.description.elements.simulator import is_classic
 from cartwheel.description.elements.xml import Node, unread
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.sdf.context import MODERN, NEWEST, NOT_CLASSIC, Context, read_version
+from cartwheel.description.sdf.context import MODERN, NEWEST, Context, read_version, simulator_for
 from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.model import read_model
 from cartwheel.description.sdf.oldest import as_modern
@@ -46,8 +45,8 @@ def read_sdf(
         )
     including = () if packages.file is None else (Path(packages.file).resolve(),)
     version = read_version(root)
-    classic = version < NOT_CLASSIC and is_classic(root)
-    ctx = Context(packages, version, including=including, classic=classic)
+    simulator = simulator_for(root, version)
+    ctx = Context(packages, version, including=including, simulator=simulator)
     if ctx.version < MODERN:
         root = as_modern(root)
     if ctx.version > NEWEST:

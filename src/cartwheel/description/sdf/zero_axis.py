@@ -22,7 +22,7 @@ def accept_zero_axis(node: Node, joint: str, said: str, ctx: Context) -> None:
     Raises:
         DescriptionError: The description is not for Gazebo Classic.
     """
-    if not ctx.classic:
+    if ctx.simulator != "classic":
         raise node.fail(said, code=robot.AXIS_ZERO, values={"joint": joint})
     ctx.warn(
         robot.AXIS_ZERO,

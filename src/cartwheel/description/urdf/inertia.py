@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from cartwheel.codes import robot
 from cartwheel.description.elements.xml import Node
-from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
+from cartwheel.description.inertia import (
+    HEAVIEST,
+    REFUSES,
+    TOLERANCE,
+    TOLERANCE_OF_GZ,
+    impossibility,
+    made_possible,
+    principal_moments,
+    refused_groups,
+)
 from cartwheel.description.model import MOMENTS, Inertial
 from cartwheel.description.urdf.context import UrdfContext, read_origin
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.geometry import Pose
 
 
 def read_inertial(node: Node) -> Inertial:
@@ -40,7 +51,7 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
     i = inertial
     diagonal, products = i.diagonal, i.products
     moments = principal_moments(diagonal, products)
-    found = impossibility(moments)
+    found = impossibility(moments, TOLERANCE_OF_GZ if ctx.simulator == "gz" else TOLERANCE)
     if found is None:
         return inertial
     message, hint = found
@@ -75,6 +86,45 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
         values={"link": link, "moments": moments, "used": smaller},
     )
     return made
+
+
+def mark_refused(
+    inertials: Mapping[str, Inertial], poses: Mapping[str, Pose], lumps: Iterable[Iterable[str]],
+    ctx: UrdfContext,
+) -> None:
+    """Adds to the diagnostics about impossible inertias that gz-sim does not load the robot.
+
+    It merges links across fixed joints first. Nothing is added if the robot may be for Gazebo
+    Classic, which loads it.
+
+    Args:
+        inertials: The inertias as stated, by link.
+        poses: The poses of the links.
+        lumps: The links that Gazebo merges into each link.
+        ctx: Contains the diagnostics.
+    """
+    reported = {each.values.get("link") for each in ctx.diagnostics if _is_impossible(each)}
+    if ctx.simulator != "gz" or not reported:
+        return
+    refused = refused_groups(
+        {name: (poses[name], inertials[name]) for name in names if name in inertials}
+        for names in lumps
+    )
+    ctx.diagnostics[:] = [
+        replace(
+            each,
+            severity="warning",
+            message=f"{each.message}; {REFUSES}",
+            values={**each.values, "refused": True},
+        )
+        if _is_impossible(each) and each.values.get("link") in refused
+        else each
+        for each in ctx.diagnostics
+    ]
+
+
+def _is_impossible(each: Diagnostic) -> bool:
+    return each.code is robot.INERTIA_IMPOSSIBLE and "moments" in each.values
 
 
 def _listed(values: tuple[float, ...]) -> str:

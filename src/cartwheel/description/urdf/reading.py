@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from cartwheel.codes import files, robot
 from cartwheel.codes import tags as tag_codes
-from cartwheel.description.elements.simulator import is_classic
+from cartwheel.description.elements.simulator import simulator_of
 from cartwheel.description.elements.xml import Node, to_element, unread
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.inertia import LIGHTEST
@@ -23,7 +23,7 @@ from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.urdf.harmless import HARMLESS
-from cartwheel.description.urdf.inertia import judged_inertia
+from cartwheel.description.urdf.inertia import judged_inertia, mark_refused
 from cartwheel.description.urdf.joint import directed, read_joint, without_invalid_mimics
 from cartwheel.description.urdf.link import ReadLink, read_link
 from cartwheel.description.urdf.material import read_materials
@@ -72,7 +72,7 @@ def read_urdf(
     joint_nodes = root.all("joint")
     _check_unique("joint", joint_nodes)
 
-    ctx.classic = is_classic(root)
+    ctx.simulator = simulator_of(root)
     parts = [read_link(node, ctx) for node in link_nodes]
     names = [part.link.name for part in parts]
     known = frozenset(names)
@@ -86,6 +86,8 @@ def read_urdf(
     links = [_complete(part, tree, poses[part.link.name], tags, ctx) for part in parts]
     joints = [tags.apply_to_joint(joint) for joint in joints if not _is_free(joint)]
     preserved = [joint.name for joint in joints if joint.preserve_fixed]
+    stated_inertials = {part.link.name: part.inertial for part in parts if part.inertial}
+    mark_refused(stated_inertials, poses, tree.lumps(preserved), ctx)
     links = name_collisions(links, tree, preserved)
     stated = {name: each.gravity for name, each in tags.links.items()}
     links, overruled = merge_gravity(links, tree, preserved, stated)

@@ -44,6 +44,18 @@ class Tree:
             link = self.inbound[link].parent
         return link
 
+    def lumps(self, preserved: Iterable[str]) -> list[list[str]]:
+        """The links that Gazebo merges into each link.
+
+        Args:
+            preserved: The fixed joints that Gazebo is configured not to merge.
+        """
+        kept = frozenset(preserved)
+        found: dict[str, list[str]] = {}
+        for link in self.order:
+            found.setdefault(self.lump_root(link, kept), []).append(link)
+        return list(found.values())
+
     def lump_root(self, link: str, preserved: Iterable[str]) -> str:
         """The link into which Gazebo merges this link, or the link itself.
 

@@ -9,10 +9,11 @@ from typing import Literal
 import numpy as np
 
 from cartwheel.component import Scope
+from cartwheel.description.inertia import combined
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import RobotDescription
 from cartwheel.devices.air.filtered_pid import FilteredPid, FilteredPidConfig
-from cartwheel.geometry import Array, Vec3, matrix_from_quat, quat_conjugate, rotate
+from cartwheel.geometry import Array, Vec3, quat_conjugate, rotate
 
 _LEAST_UPRIGHT = 0.1
 """Smallest cosine of the tilt at which the thrust compensates gravity completely."""
@@ -188,25 +189,11 @@ def merged_inertia(description: RobotDescription, link: str) -> tuple[float, Arr
         merged |= fixed
     poses = link_poses(description, {})
     to_link = poses[link].inverse()
-    parts = [
-        (each.inertial, to_link @ poses[each.name] @ each.inertial.pose)
+    mass, centre, total = combined(
+        (to_link @ poses[each.name], each.inertial)
         for each in description.links
         if each.name in merged and each.inertial is not None
-    ]
-    mass = sum(inertial.mass for inertial, _ in parts)
-    centre = sum(
-        (inertial.mass * np.array(pose.position) for inertial, pose in parts), np.zeros(3)
-    ) / max(mass, 1e-12)
-    total = np.zeros((3, 3))
-    for inertial, pose in parts:
-        own = np.diag(inertial.diagonal)
-        own[0, 1] = own[1, 0] = inertial.ixy
-        own[0, 2] = own[2, 0] = inertial.ixz
-        own[1, 2] = own[2, 1] = inertial.iyz
-        turn = matrix_from_quat(pose.orientation)
-        arm = np.array(pose.position) - centre
-        total += turn @ own @ turn.T
-        total += inertial.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    )
     x, y, z = np.diag(total).tolist()
     return mass, centre, (x, y, z)
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from cartwheel.checks import edits, nodes, spelling
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
-from cartwheel.checks.rules.devices.merged_links import merged_root
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element, Sensor
@@ -51,7 +50,7 @@ def contact_never_fires(subject: Subject) -> Iterator[Diagnostic]:
         if target is None or not robot.is_placed:
             continue
         link, index = target
-        root = merged_root(robot, link)
+        root = robot.merged_root(link)
         if root == link:
             continue  # a variant of the collision's own name, which Gazebo may or may not accept
         right = _gazebo_names(robot)[link][index]
@@ -92,7 +91,7 @@ def _gazebo_names(robot: Robot) -> dict[str, list[str]]:
     names: dict[str, list[str]] = {}
     counts: dict[str, int] = {}
     for link in _parents_first(robot):
-        root = merged_root(robot, link)
+        root = robot.merged_root(link)
         for collision in robot.links[link].collisions:
             count = counts.get(root, 0)
             counts[root] = count + 1

@@ -39,7 +39,7 @@ def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
         return
     for robot, element in _named(subject, plugin_tags.links_in):
         name = element.text.strip().lstrip("/")
-        root = merged_root(robot, name) if name in robot.links else name
+        root = robot.merged_root(name) if name in robot.links else name
         holder = robot.inbound.get(name)
         if root == name or holder is None:
             continue
@@ -85,17 +85,3 @@ def _named(
 def _same_frame(robot: Robot, a: str, b: str) -> bool:
     between = robot.links[a].pose.inverse() @ robot.links[b].pose
     return max(map(abs, (*between.position, *between.orientation[:3]))) < 1e-6
-
-
-def merged_root(robot: Robot, link: str) -> str:
-    """The link into which Gazebo merges a link; the link itself if it remains."""
-    seen = {link}
-    while link in robot.inbound:
-        joint = robot.inbound[link]
-        if joint.type != "fixed" or joint.preserve_fixed or joint.parent not in robot.links:
-            break
-        if joint.parent in seen:
-            break
-        link = joint.parent
-        seen.add(link)
-    return link

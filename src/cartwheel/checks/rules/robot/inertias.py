@@ -20,16 +20,25 @@ from cartwheel.checks.masses import (
     moments_of,
     ratio_text,
     shape_inertia,
+    stated_inertials,
 )
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.inertia import LIGHTEST, impossibility
+from cartwheel.description.inertia import (
+    LIGHTEST,
+    REFUSES,
+    TOLERANCE,
+    TOLERANCE_OF_GZ,
+    impossibility,
+    is_refused,
+    refused_groups,
+)
 from cartwheel.description.model import MOMENTS, Inertial, Link
 from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic, Origin
-from cartwheel.geometry import Vec3
+from cartwheel.geometry import Pose, Vec3
 
 TOO_LARGE = 1.5
 """Maximum ratio to the inertia of the same mass placed at the corners of the geometry's box."""
@@ -41,10 +50,8 @@ too small for Gazebo."""
 _LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
 """Relative rounding error of a value that should be 0."""
-_NEVERTHELESS = (
-    "Gazebo Classic simulates this inertia anyway, but gz-sim rejects it. Cartwheel increases the "
-    "smaller moments."
-)
+_NEVERTHELESS = "Gazebo Classic simulates this inertia anyway"
+_INCREASED = "Cartwheel increases the smaller moments."
 _WITHOUT = "Gazebo Classic divides by zero. Cartwheel computes the inertia from the geometry."
 
 
@@ -90,29 +97,53 @@ def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
             yield replace(failure, severity="warning")
     yield from _impossible_in_sdf(subject)
     held = in_fixed_groups(subject)
+    refused = _refused(subject)
+    tolerance = TOLERANCE_OF_GZ if subject.simulator == "gz" else TOLERANCE
     for link, inertial in inertials(subject):
         tensor = nodes.child(inertial, "inertia")
         moments = moments_of(inertial)
         mass = nodes.number(nodes.text_of(nodes.child(inertial, "mass"), "value"))
         if moments is None or mass is None or mass < LIGHTEST:
             continue
-        wrong = impossibility(moments)
+        wrong = impossibility(moments, tolerance)
         name = nodes.name_of(link)
         if wrong is None or (not any(moments) and name in held):
             continue
         place = tensor or inertial
         negative = min(moments) < -_ROUNDED * max(moments)
         # The inertia is a small part of the sum with a heavier link that this one is fixed to.
-        part = _is_part(subject, name, max(moments))
+        part = name not in refused and _is_part(subject, name, max(moments))
+        is_error = negative or name in refused
         yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
-            severity="info" if part else "error" if negative else None,
-            message=f'link "{name}": {wrong[0]}',
+            severity="info" if part else "error" if is_error else None,
+            message=f'link "{name}": {wrong[0]}{f"; {REFUSES}" if name in refused else ""}',
             values={"link": name, "moments": moments},
             origin=place.origin,
             instead=_inertia_text(inertia_of_geometry(subject, name), mass),
             place="element" if tensor is not None else "inside",
-            hint="" if part or negative else _NEVERTHELESS if any(moments) else _WITHOUT,
+            hint="" if part or is_error else _fate(moments) if any(moments) else _WITHOUT,
         )
+
+
+def _fate(moments: Vec3) -> str:
+    """What simulators do with an impossible inertia."""
+    return f"{_NEVERTHELESS}{', but gz-sim rejects it' if is_refused(moments) else ''}. {_INCREASED}"
+
+
+def _refused(subject: Subject) -> frozenset[str]:
+    """The links of a URDF that gz-sim merges into ones for which it does not load the robot.
+
+    Empty for a robot that may be for Gazebo Classic.
+    """
+    if subject.simulator != "gz":
+        return frozenset()
+    stated = dict(stated_inertials(subject))
+    groups: dict[str, dict[str, tuple[Pose, Inertial]]] = {}
+    for robot in subject.robots:
+        for name in stated.keys() & robot.placed:
+            group = groups.setdefault(robot.merged_root(name), {})
+            group[name] = robot.links[name].pose, stated[name]
+    return refused_groups(groups.values())
 
 
 def _impossible_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
@@ -125,16 +156,20 @@ def _impossible_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
         if diagnostic.severity == "error" or not subject.in_sdf(diagnostic.origin):
             continue
         robot, link = links.get(str(values["link"]), (None, None))
-        wrong = impossibility(cast(Vec3, values["moments"]))
+        moments = cast(Vec3, values["moments"])
+        wrong = impossibility(moments, TOLERANCE_OF_GZ)
         like = shape_inertia(robot, link) if robot is not None and link is not None else None
         mass = link.inertial.mass if link is not None and link.inertial is not None else 1.0
+        refused = values.get("refused") is True
         yield robot_codes.INERTIA_IMPOSSIBLE.diagnostic(
-            severity=diagnostic.severity,
-            message=f'link "{values["link"]}": {wrong[0]}' if wrong else diagnostic.message,
+            severity="error" if refused else diagnostic.severity,
+            message=f'link "{values["link"]}": {wrong[0]}{f"; {REFUSES}" if refused else ""}'
+            if wrong
+            else diagnostic.message,
             values=values,
             origin=diagnostic.origin,
             instead=_inertia_text(like, mass, sdf=True),
-            hint=_NEVERTHELESS,
+            hint="" if refused else _fate(moments),
         )
 
 

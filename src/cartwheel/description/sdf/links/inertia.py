@@ -13,7 +13,11 @@ from cartwheel.codes.robot import INERTIA_IMPOSSIBLE, MASS_NOT_POSITIVE
 from cartwheel.description.inertia import (
     HEAVIEST,
     LIGHTEST,
+    REFUSES,
+    TOLERANCE,
+    TOLERANCE_OF_GZ,
     impossibility,
+    is_refused,
     made_possible,
     principal_moments,
 )
@@ -78,7 +82,8 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
     if rigid and not any((*diagonal, *products)):
         return i  # a point mass: the link that it is fixed to has the inertia
     moments = principal_moments(diagonal, products)
-    wrong = impossibility(moments)
+    in_gz = ctx.simulator == "gz"
+    wrong = impossibility(moments, TOLERANCE_OF_GZ if in_gz else TOLERANCE)
     if wrong is None:
         return i
     message, hint = f'link "{link.name}": {wrong[0]}', wrong[1]
@@ -109,6 +114,9 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
         made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
         a, b, _ = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
         here = f"Cartwheel increases the smaller moments to {a:.4g} and {b:.4g}"
+    if in_gz and is_refused(moments):
+        here += f"; {REFUSES}"
+        values["refused"] = True
     ctx.warn(
         INERTIA_IMPOSSIBLE,
         f"{message}; {here}",
