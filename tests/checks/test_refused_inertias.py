@@ -18,9 +18,7 @@ POSSIBLE = ("0.1", "0.1", "0.1")
 JOINT = '<joint name="j" type="{}"><parent link="base"/><child link="arm"/>{}</joint>'
 FIXED = JOINT.format("fixed", "")
 TURNING = JOINT.format("continuous", '<axis xyz="0 0 1"/>')
-PRESERVED = (
-    '<gazebo reference="j"><preserveFixedJoint>true</preserveFixedJoint></gazebo>'
-)
+PRESERVED = '<gazebo reference="j"><preserveFixedJoint>true</preserveFixedJoint></gazebo>'
 
 
 def urdf(base, arm, joint, *plugins, mass=1, arm_place=""):

@@ -7,9 +7,7 @@ from cartwheel.codes.tags import TAG_IGNORED
 from cartwheel.description import load
 
 BOX = '<sdf version="1.6"><model name="m"><link name="a"/></model></sdf>'
-WORLD = (
-    '<sdf version="1.6"><world name="w"><include><uri>model://box</uri></include></world></sdf>'
-)
+WORLD = '<sdf version="1.6"><world name="w"><include><uri>model://box</uri></include></world></sdf>'
 HEAD = '?xml version="1.0"?>\n'
 
 

@@ -12,9 +12,7 @@ MODEL = (
     '<joint name="laid" type="{5}"><parent>frame</parent><child>floor</child>'
     "<axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"
 )
-LOOSE = (
-    '<sdf version="1.7"><model name="m">{0}<link name="floor">{1}{2}</link></model></sdf>'
-)
+LOOSE = '<sdf version="1.7"><model name="m">{0}<link name="floor">{1}{2}</link></model></sdf>'
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -49,15 +49,9 @@ def stated_inertials(subject: Subject) -> Iterator[tuple[str, Inertial]]:
         moments = [value for value in found if value is not None]
         if mass is None or mass <= 0 or len(moments) < len(found) or not (xyz and rpy):
             continue
-        yield (
-            nodes.name_of(link),
-            Inertial(
-                mass=mass,
-                pose=Pose.from_xyz_rpy(cast(Vec3, xyz), cast(Vec3, rpy)),
-                origin=inertial.origin,
-                **dict(zip(MOMENTS, moments, strict=True)),
-            ),
-        )
+        values: dict[str, Any] = dict(zip(MOMENTS, moments, strict=True))
+        pose = Pose.from_xyz_rpy(cast(Vec3, xyz), cast(Vec3, rpy))
+        yield nodes.name_of(link), Inertial(mass=mass, pose=pose, origin=inertial.origin, **values)
 
 
 def inertials(subject: Subject) -> Iterator[tuple[Node, Node]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +39,9 @@ _ALONG = 0.1
 _UP = np.array([0.0, 0.0, 1.0])
 _GRAVITY = 9.8
 """m/s²."""
+_NOTICED = 0.05
+"""Smallest effect of slip on the turn rate, relative to the commanded one."""
+_Slips = Callable[[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,6 +58,9 @@ class Contact:
     """Coefficients along and across `direction`; 0 where it rolls freely or swivels."""
     direction: tuple[float, float] = (1.0, 0.0)
     """Unit vector."""
+    slip: tuple[float, float] = (0.0, 0.0)
+    """Sliding speed along and across `direction` at which the friction is the whole weight, m/s; 0
+    for friction by Coulomb's law only."""
 
 
 def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Floats:
@@ -63,7 +69,7 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
     The friction opposes the sliding velocity of each contact, so its forces and torque balance
     where the power that the contacts dissipate is least. This power is a sum of norms, which is
     minimised by repeatedly weighted least squares. The limit of the friction is an ellipse if its
-    coefficients differ.
+    coefficients differ. With slip, the friction is at most proportional to the sliding velocity.
 
     Args:
         contacts: Where the base touches the ground.
@@ -78,6 +84,7 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
     # Sliding velocities along and across the direction, each as rows @ motion - driven.
     axes = [(np.stack([a, b, b * x - a * y], 1), a * rim) for a, b in ((c, s), (-s, c))]
     grips = [loads * np.array([each.friction[i] for each in contacts]) for i in (0, 1)]
+    most = [1.0 / np.maximum([each.slip[i] for each in contacts], _STILL**3) for i in (0, 1)]
     strongest = np.maximum(np.maximum(*grips), _STILL)
     motion: Floats = np.zeros(3)
     for _ in range(_ROUNDS):
@@ -88,8 +95,9 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
         weights = 1.0 / np.sqrt(slides[0] ** 2 + slides[1] ** 2 + (_STILL * strongest) ** 2)
         matrix: Floats = np.zeros((3, 3))
         vector: Floats = np.zeros(3)
-        for grip, (rows, driven) in zip(grips, axes, strict=True):
-            weighted: Floats = np.asarray(rows * (grip**2 * weights)[:, None]).T
+        for grip, limit, (rows, driven) in zip(grips, most, axes, strict=True):
+            weight = np.minimum(grip**2 * weights, limit)
+            weighted: Floats = np.asarray(rows * weight[:, None]).T
             matrix = matrix + weighted @ rows
             vector = vector + weighted @ driven
         motion = np.asarray(np.linalg.lstsq(matrix, vector, rcond=None)[0], dtype=np.float64)
@@ -112,6 +120,7 @@ def turn_ratio(
     *,
     dragged: bool = False,
     outer: bool = False,
+    slips: _Slips | None = None,
 ) -> float | None:
     """Turn rate of a base whose left and right wheels are driven for a turn of 1 rad/s.
 
@@ -124,6 +133,8 @@ def turn_ratio(
         dragged: Whether other parts of the base slide, although no wheel has to.
         outer: Whether only the driven wheels of the first and last axle carry the base. They slide
             most, so it turns slowest. On uneven ground or bogies, this depends on details.
+        slips: Returns the slip along and across the direction of a part, from ``<slip1>`` and
+            ``<slip2>``, if its friction directions do not turn with the base. None: no slip.
 
     Returns:
         None if nothing has to slide in a turn, or if the contacts are unknown.
@@ -145,13 +156,14 @@ def turn_ratio(
             rim=rim if joint in left else -rim,
             friction=_friction(robot, joint.child, axle),
             direction=_direction(robot, joint.child, axle),
+            slip=_slip(robot, wheel_links(robot, joint), axle, slips),
         )
         for joint in driven
     ]
     if outer:
         ends = min(each.x for each in contacts), max(each.x for each in contacts)
         contacts = [each for each in contacts if min(abs(each.x - x) for x in ends) < _AHEAD]
-    others = list(_others(robot, driven, wheels, axle, min(bottoms)))
+    others = list(_others(robot, driven, wheels, axle, min(bottoms), slips=slips))
     skids = any(each.friction[0] < each.friction[1] or dragged for each in others)
     spread = {round(each.x, 3) for each in contacts}
     # What another plugin drives is unknown here.
@@ -168,12 +180,52 @@ def turn_ratio(
     return abs(float(motion[2]))
 
 
-def dragged_turn(robot: Robot) -> float | None:
-    """Turn rate of a base that drags parts over the ground, relative to that of its wheels.
+def turn_with_slip(
+    robot: Robot,
+    left: Sequence[Joint],
+    right: Sequence[Joint],
+    axle: Floats,
+    rim: float,
+    *,
+    dragged: bool = False,
+) -> float | None:
+    """The turn rate as by `turn_ratio`, with the ``<slip1>`` and ``<slip2>`` of all collisions.
+
+    Friction directions that do not turn with the base may have any direction; the one is used with
+    which slip has the largest effect.
 
     Returns:
-        None if it is unknown.
+        None without slip, and if its effect is small.
     """
+    surfaces = (part.surface for link in robot.description.links for part in link.collisions)
+    if not any(each.slip1 or each.slip2 for each in surfaces):
+        return None
+    plain = turn_ratio(robot, left, right, axle, rim, dragged=dragged)
+    if plain is None:
+        return None
+    orders: tuple[_Slips, ...] = (
+        lambda first, second: (first, second),
+        lambda first, second: (second, first),
+        lambda first, second: (max(first, second),) * 2,
+    )
+    found = [turn_ratio(robot, left, right, axle, rim, dragged=dragged, slips=o) for o in orders]
+    known = [each for each in found if each is not None]
+    farthest = max(known, key=lambda each: abs(each - plain), default=plain)
+    return farthest if abs(farthest - plain) > _NOTICED else None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Dragged:
+    """How a base turns that drags parts over the ground, relative to its wheels."""
+
+    turn: float
+    """Turn rate."""
+    slips: bool
+    """Whether it is different with the ``<slip1>`` and ``<slip2>`` of these parts."""
+
+
+def dragged_turn(robot: Robot) -> Dragged | None:
+    """How a base turns that drags parts over the ground; None if it is unknown."""
     for left, right in robot.sides:
         if not left or not right or not {*left, *right} <= robot.joints.keys():
             continue
@@ -186,7 +238,9 @@ def dragged_turn(robot: Robot) -> float | None:
         )
         track = abs(float((first - second) @ axle))
         if track > 0:
-            return turn_ratio(robot, ours, theirs, axle, track / 2, dragged=True)
+            turn = turn_ratio(robot, ours, theirs, axle, track / 2, dragged=True)
+            slip = turn_with_slip(robot, ours, theirs, axle, track / 2, dragged=True)
+            return None if turn is None else Dragged(turn=turn, slips=slip is not None)
     return None
 
 
@@ -280,9 +334,15 @@ def is_held(robot: Robot, driven: Sequence[Joint]) -> bool:
 
 
 def _others(
-    robot: Robot, driven: Sequence[Joint], wheels: set[str], axle: Floats, bottom: float
+    robot: Robot,
+    driven: Sequence[Joint],
+    wheels: set[str],
+    axle: Floats,
+    bottom: float,
+    *,
+    slips: _Slips | None = None,
 ) -> Iterator[Contact]:
-    """The other parts that touch the ground."""
+    """The other parts that touch the ground. `slips` is as for `turn_ratio`."""
     base = robot.rigid_root(driven[0].parent)
     touching = _touching(robot, bottom)
     for link in robot.description.links:
@@ -304,6 +364,7 @@ def _others(
             x=_ahead(axle, place),
             y=float(axle @ place),
             friction=(mu if fixed else 0.0, mu if rolls or fixed else 0.0),
+            slip=_slip(robot, [link.name], axle, slips),
         )
 
 
@@ -342,6 +403,21 @@ def _friction(robot: Robot, link: str, axle: Floats) -> tuple[float, float]:
         # The axes turn with the wheel, or are those of the world.
         first = second = max(first, second)
     return first, second
+
+
+def _slip(
+    robot: Robot, links: Iterable[str], axle: Floats, slips: _Slips | None
+) -> tuple[float, float]:
+    """Slip along and across the direction of the first collision of links; see `Contact.slip`."""
+    found = ((name, part.surface) for name in links for part in robot.links[name].collisions)
+    link, surface = next(found, ("", None))
+    if slips is None or surface is None:
+        return 0.0, 0.0
+    weight = _GRAVITY * robot.description.mass
+    first, second = (max(each or 0.0, 0.0) for each in (surface.slip1, surface.slip2))
+    if surface.fdir1_frame is None and not _is_along_axle(robot, link, axle):
+        first, second = slips(first, second)
+    return first * weight, second * weight
 
 
 def _is_along_axle(robot: Robot, link: str, axle: Floats) -> bool:

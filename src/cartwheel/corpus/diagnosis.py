@@ -57,6 +57,15 @@ _WITHOUT_WHEELS = frozenset(
     }
 )
 """What follows from driven wheels without collisions, or is not as predicted without them."""
+_BY_SLIDING = frozenset(
+    {
+        robot.BODY_ON_GROUND,
+        robot.CASTER_FRICTION,
+        robot.SKID_STEERING,
+        robot.WHEEL_SEPARATION_MISMATCH,
+    }
+)
+"""Reasons for a turn rate that depend on how parts slide."""
 _JOINTS = frozenset(
     {
         robot.LIMIT_ZERO,
@@ -320,9 +329,12 @@ def _measured(
                 # It also stands well enough to drive.
                 unsteady = wheel
             reason = reason or unsteady or ignored_torque(found, 1.0 + drive.error_turn)
-            # How wheels with slip slide is not simulated.
-            sure = reason is None or reason.values.get("slip") is not True
+            sure = reason is None or not (reason.code in _BY_SLIDING and _slipping(found))
             yield Fault(test="turn", subject=drive.topic, reason=reason, sure=sure)
+        elif _has_slip(description) and drive.commanded_turn:
+            reason = _slipping(explaining("turn", drive.topic))
+            if reason is not None:
+                yield Fault(test="turn", subject=drive.topic, reason=reason, sure=False)
         if not drive.slides:
             found = explaining("sideways", drive.topic)
             reason = cause_of_drive(found, 1.0 + drive.error_sideways, sideways=True)
@@ -344,6 +356,17 @@ def _measured(
     for flight in verdict.flights:
         if not flight.flies:
             yield Fault(test="fly", subject=flight.topic)
+
+
+def _has_slip(description: RobotDescription) -> bool:
+    """Whether a collision states slip."""
+    surfaces = (part.surface for link in description.links for part in link.collisions)
+    return any(each.slip1 or each.slip2 for each in surfaces)
+
+
+def _slipping(found: Sequence[Diagnostic]) -> Diagnostic | None:
+    """The finding that slip, which is not simulated, changes the turn rate."""
+    return next((each for each in found if each.values.get("slip") is True), None)
 
 
 def _explaining(

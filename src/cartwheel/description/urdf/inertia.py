@@ -89,7 +89,9 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
 
 
 def mark_refused(
-    inertials: Mapping[str, Inertial], poses: Mapping[str, Pose], lumps: Iterable[Iterable[str]],
+    inertials: Mapping[str, Inertial],
+    poses: Mapping[str, Pose],
+    lumps: Iterable[Iterable[str]],
     ctx: UrdfContext,
 ) -> None:
     """Adds to the diagnostics about impossible inertias that gz-sim does not load the robot.

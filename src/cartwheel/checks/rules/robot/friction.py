@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
-from cartwheel.checks.sliding import dragged_turn, is_held, rolls_only_forward
+from cartwheel.checks.sliding import Dragged, dragged_turn, is_held, rolls_only_forward
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import ROUND, lowest, wheel_joints, wheel_links, wheel_widths
 from cartwheel.codes import robot as robot_codes
@@ -104,15 +104,14 @@ def _braking(
     collision: Collision,
     problem: str,
     *,
-    turn: float | None,
+    turn: Dragged | None,
     holds: bool,
     instead: str = "",
     hint: str,
 ) -> Iterator[Diagnostic]:
     """The diagnostic for a part that brakes the robot.
 
-    `turn` is the turn rate with all such parts, relative to that of the wheels. `instead` and
-    `hint` are those for URDF.
+    `turn` is how the robot turns with all such parts. `instead` and `hint` are those for URDF.
     """
     mu = collision.surface.mu1
     if not _brakes(mu):
@@ -121,7 +120,13 @@ def _braking(
     yield robot_codes.CASTER_FRICTION.diagnostic(
         message=f"{problem}, and its friction coefficient is {_shown(mu)}{_STUCK if holds else ''}",
         severity="warning" if holds else None,
-        values={"link": link.name, "friction": mu, "holds": holds, "ratio": turn},
+        values={
+            "link": link.name,
+            "friction": mu,
+            "holds": holds,
+            "ratio": None if turn is None else turn.turn,
+            **({"slip": True} if turn is not None and turn.slips else {}),
+        },
         origin=collision.origin,
         instead="" if in_sdf else instead,
         hint=_IN_SDF if in_sdf else hint,

@@ -127,7 +127,9 @@ def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
 
 def _fate(moments: Vec3) -> str:
     """What simulators do with an impossible inertia."""
-    return f"{_NEVERTHELESS}{', but gz-sim rejects it' if is_refused(moments) else ''}. {_INCREASED}"
+    return (
+        f"{_NEVERTHELESS}{', but gz-sim rejects it' if is_refused(moments) else ''}. {_INCREASED}"
+    )
 
 
 def _refused(subject: Subject) -> frozenset[str]:

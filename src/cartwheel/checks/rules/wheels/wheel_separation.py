@@ -7,10 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.wheels.wheel_diameter import wrong_size
-from cartwheel.checks.sliding import turn_ratio
+from cartwheel.checks.sliding import turn_ratio, turn_with_slip
 from cartwheel.checks.stated_sizes import (
     LEAST,
     Stated,
@@ -21,7 +20,7 @@ from cartwheel.checks.stated_sizes import (
 )
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.tracks import sliding_tracks
-from cartwheel.checks.wheels import axle_of, wheel_links, wheel_place
+from cartwheel.checks.wheels import axle_of, wheel_place
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
 from cartwheel.errors import Diagnostic
@@ -32,13 +31,10 @@ WIDEST_SKID = 2.5
 Skid-steered robots need a larger value for correct odometry. This limit applies to robots that are
 not longer than wide; see `_widest`.
 """
-UNKNOWN_SLIP = ", without the <slip1> or <slip2> of the wheels, which is not simulated"
-_LEAST_SLIP = 0.01
-"""Speed at which a wheel slips that transmits the whole weight, m/s, from which slip counts."""
+_TAGS = "the <slip1> or <slip2> of the wheels"
+UNKNOWN_SLIP = f", without {_TAGS}, which is not simulated"
 _LEAST_SKID = 0.05
 """Minimum relative difference between the commanded and the expected turn rate."""
-_GRAVITY = 9.8
-"""m/s²."""
 
 
 @rule(robot_codes.WHEEL_SEPARATION_MISMATCH)
@@ -131,13 +127,22 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
         left, right = (_with_followers(one, side) for side in (one.first, one.second))
         axle = axle_of(one.robot, one.first, one.second, beside=True)
         ratio = turn_ratio(one.robot, left, right, axle, one.used / 2)
-        if ratio is None or ratio == 0 or abs(ratio - 1.0) <= _LEAST_SKID:
+        if ratio is None or ratio == 0:
+            continue
+        slipping = turn_with_slip(one.robot, left, right, axle, one.used / 2)
+        turns = abs(ratio - 1.0) <= _LEAST_SKID
+        if turns and slipping is None:
             continue
         least = turn_ratio(one.robot, left, right, axle, one.used / 2, outer=True)
-        slip = any(_slips(one.robot, joint) for joint in (*left, *right))
+        message = f"the wheels slide when the robot turns, {_effect(one, ratio)}"
+        if slipping is not None:
+            message += UNKNOWN_SLIP
+            if turns:
+                message = f"with {_TAGS}, the robot turns at about {slipping:.0%} of the commanded "
+                message += "rate in Gazebo; slip is not simulated"
         yield robot_codes.SKID_STEERING.diagnostic(
-            message=f"the wheels slide when the robot turns, {_effect(one, ratio)}"
-            f"{UNKNOWN_SLIP if slip else ''}",
+            message=message,
+            severity="info" if turns else None,
             values={
                 "tag": one.label,
                 "joint": one.first[0],
@@ -150,10 +155,12 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
                 "fits": one.value / ratio,
                 "rolling": one.used / mean_between(one, beside=True),
                 **one.owner,
-                **({"slip": True} if slip else {}),
+                **({} if slipping is None else {"slip": True, "slipping": slipping}),
             },
             origin=one.origin,
-            hint=compensation(one.value, one.factor, one.multiplier, ratio, scaled=one.measured),
+            hint=""
+            if turns
+            else compensation(one.value, one.factor, one.multiplier, ratio, scaled=one.measured),
             mark=one.mark,
         )
 
@@ -187,16 +194,6 @@ def _effect(one: Stated, ratio: float) -> str:
     if one.measured:
         stated = f'"{one.multiplier}" of {one.factor:.4g}'
     return f"but {stated} compensates for more than that, {rate}"
-
-
-def _slips(robot: Robot, joint: Joint) -> bool:
-    """Whether the slip of a wheel lets it slide sideways or along at less than its friction."""
-    weight = _GRAVITY * robot.description.mass
-    surfaces = [
-        part.surface for link in wheel_links(robot, joint) for part in robot.links[link].collisions
-    ]
-    slips = [slip or 0.0 for each in surfaces for slip in (each.slip1, each.slip2)]
-    return max(slips, default=0.0) * weight >= _LEAST_SLIP
 
 
 def _with_followers(one: Stated, side: Sequence[str]) -> list[Joint]:
