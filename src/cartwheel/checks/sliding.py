@@ -1,4 +1,7 @@
-"""How a base moves whose wheels slide on the ground."""
+"""How a base moves whose wheels slide on the ground.
+
+The file is long because turning, dragging and braking follow from the same contacts.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Explains failed tests by diagnostics: of the run, and of `cartwheel check`."""
+"""Explains failed tests by diagnostics: of the run, and of `cartwheel check`.
+
+The file is long because the explanations of all tests depend on each other.
+"""
 
 from __future__ import annotations
 
