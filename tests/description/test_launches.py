@@ -662,6 +662,8 @@ def test_a_launch_file_that_only_starts_a_publisher_of_states_comes_last(package
     ("content", "namespace", "name"),
     [
         ("type: a/B\njoint: j", 'ns="left/grip_controller"', "grip_controller="),
+        ("# One.\n\n  joint: j\n  type: a/B", 'ns="left/grip_controller"', "grip_controller="),
+        ("---\n  arm:\n    type: a/B", 'ns="robot"', ""),
         ("type: a/B\njoint: j", "", ""),
         ("arm_controller: {type: a/B}", 'ns="robot"', ""),
         ("type: a/B", 'ns="$(arg unknown)"', ""),

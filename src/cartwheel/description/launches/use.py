@@ -41,15 +41,20 @@ _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
+_FIRST_KEY = re.compile(r"^( *)(?!---|[\s#%])", re.MULTILINE)
+"""The indentation of a YAML file's first key, which is that of all keys of the same mapping."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
 
 
 def _is_single(file: Path) -> bool:
     """Whether a YAML file contains the parameters of a single controller."""
     try:
-        return re.search(r"^type\s*:", yaml_text.read(file), re.MULTILINE) is not None
+        text = yaml_text.read(file)
     except (CartwheelError, OSError, UnicodeDecodeError):
         return False
+    first = _FIRST_KEY.search(text)
+    indentation = "" if first is None else first[1]
+    return re.search(rf"^{indentation}[\"']?type[\"']?[ \t]*:", text, re.MULTILINE) is not None
 
 
 @dataclass(kw_only=True)
