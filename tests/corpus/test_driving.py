@@ -1,10 +1,10 @@
 """Bases that are driven forward and turned in place."""
 
 import pytest
-from tests.corpus.carts import RADIUS, cart, plugin, written
+from tests.corpus.carts import RADIUS, TRACK, cart, controlled, plugin, written
 
 from cartwheel.codes.devices import PLUGIN_PARAMETER_OBSOLETE
-from cartwheel.codes.robot import WHEEL_DIAMETER_MISMATCH
+from cartwheel.codes.robot import WHEEL_DIAMETER_MISMATCH, WHEEL_SEPARATION_MISMATCH
 from cartwheel.corpus import try_robot
 from cartwheel.corpus.driving import VELOCITY
 
@@ -35,3 +35,28 @@ def test_a_torque_that_gazebo_ignores_explains_why_a_heavy_base_is_slow(tmp_path
     verdict = try_robot(written(tmp_path, heavy, drive), standing=1.0)
     faults = [(each.code, each.source) for each in verdict.faults if each.test == "drive"]
     assert faults == [(PLUGIN_PARAMETER_OBSOLETE, "file")] * (tag == "torque")
+
+
+@pytest.mark.parametrize("timeout", [0.03, 0.011])
+def test_commands_are_published_before_the_controller_stops_the_wheels(tmp_path, timeout):
+    """Otherwise it is too slow, which hides that it turns too fast."""
+    drive = controlled(tmp_path, 1.25 * TRACK)
+    file = tmp_path / "base.yaml"
+    file.write_text(f"{file.read_text()}    cmd_vel_timeout: {timeout}\n")
+    verdict = try_robot(written(tmp_path, cart(), drive), standing=1.0)
+    (driven,) = verdict.drives
+    assert driven.error == pytest.approx(0.0, abs=0.01)
+    assert driven.error_turn == pytest.approx(0.25, abs=0.02)
+    assert [(each.test, each.code) for each in verdict.faults] == [
+        ("turn", WHEEL_SEPARATION_MISMATCH)
+    ]
+
+
+def test_a_plugin_without_wheels_receives_commands_before_they_expire(tmp_path):
+    move = (
+        '<gazebo><plugin name="move" filename="libgazebo_ros_planar_move.so">'
+        "<commandTopic>cmd_vel</commandTopic><cmdTimeout>0.03</cmdTimeout></plugin></gazebo>"
+    )
+    verdict = try_robot(written(tmp_path, cart(), move), standing=1.0)
+    (driven,) = verdict.drives
+    assert driven.passes

@@ -16,6 +16,7 @@ from cartwheel.corpus.motion import positions
 from cartwheel.corpus.verdict import TOLERANCE, Drive
 from cartwheel.devices.drives.drive import Drive as DriveDevice
 from cartwheel.devices.drives.drive import Drives
+from cartwheel.devices.drives.timeouts import CommandTimeouts
 from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.classic.drives.planar_move import PlanarMove
 from cartwheel.dialects.gz.velocity_control import VelocityControl
@@ -47,8 +48,8 @@ to the command, below which a base no longer accelerates."""
 _SLID = 0.01
 """Speed that a base of planar_move loses, also in Gazebo, if it slides with a friction coefficient
 of 1, m/s."""
-_RATE = 20.0
-"""Rate of commands, Hz."""
+_PERIOD = 0.05
+"""Time between two commands, s, unless they expire earlier."""
 _WITHOUT_WHEELS = (PlanarMove, VelocityControl)
 """Plugins that move a whole model, also sideways."""
 
@@ -257,18 +258,20 @@ def _measured(
     ahead = rotate(robot.description.canonical_pose.inverse().orientation, (*facing, 0))
     middle = len(poses) // 2
     parts = (poses, poses[: middle + 1], poses[middle:])
-    motion, *halves = (_velocity(part, ahead) for part in parts)
+    period = _period(world, topic)
+    motion, *halves = (_velocity(part, ahead, period) for part in parts)
     return _Measurement(motion, (halves[0], halves[1]), facing)
 
 
-def _velocity(poses: Sequence[Pose], forward: Vec3) -> Motion:
+def _velocity(poses: Sequence[Pose], forward: Vec3, period: float) -> Motion:
     """The mean velocity along a path, in the frame at its start.
 
     Args:
-        poses: At the rate of the commands.
+        poses: At the times of the commands.
         forward: The direction that counts as forward in the frame of the poses.
+        period: Time between two commands, s.
     """
-    seconds = (len(poses) - 1) / _RATE
+    seconds = (len(poses) - 1) * period
     before, after = poses[0], poses[-1]
     x, y, _ = rotate(before.orientation, forward)
     length = math.hypot(x, y) or 1.0
@@ -305,15 +308,25 @@ def _drive_on(
     """Publishes a command, and calls `look` after each message."""
     linear = {"x": command.ahead, "y": command.left, "z": climb}
     twist = {"linear": linear, "angular": {"z": command.turn}}
-    for _ in range(round(seconds * _RATE)):
+    period = _period(world, topic)
+    for _ in range(round(seconds / period)):
         said: dict[str, Any] = twist
         if topic.type == TWIST_STAMPED:
             now, rest = divmod(world.session.simulation.time_ns, NANOSECONDS)
             said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
         world.publish(topic.name, said)
-        world.run(1.0 / _RATE)
+        world.run(period)
         if look is not None:
             look()
+
+
+def _period(world: World, topic: TopicInfo) -> float:
+    """Time between two commands on a topic, s: at most half of that after which they expire."""
+    timeout = world.session.shared.get(CommandTimeouts).shortest(topic.subscribers)
+    if timeout >= 2 * _PERIOD:
+        return _PERIOD
+    step = world.step_size
+    return max(1, math.floor(timeout / (2 * step))) * step
 
 
 def _yaw(pose: Pose) -> float:

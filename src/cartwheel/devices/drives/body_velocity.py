@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from cartwheel.component import Component, Scope
+from cartwheel.devices.drives.timeouts import CommandTimeouts
 from cartwheel.geometry import Vec3
 
 _AT_REST = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -50,6 +51,7 @@ class BodyVelocity(Component):
         )
         self.subscribe(config.topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout is not None:
+            self.shared.get(CommandTimeouts).set(self.node, config.timeout)
             self.part.schedule(0, before=self._stop_after_timeout)
         self.reset()
 

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from cartwheel.component import Component
 from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of, planar_motion
 from cartwheel.devices.drives.reckoning import Motion
+from cartwheel.devices.drives.timeouts import CommandTimeouts
 from cartwheel.devices.joints.states import JointStates, JointStatesConfig
 
 
@@ -71,6 +72,7 @@ class Drive(Component):
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout is not None:
             self._timeout = config.timeout
+            self.shared.get(CommandTimeouts).set(self.node, config.timeout)
             self.part.schedule(0, before=self._watch).reads_state = reads_state
         idle = self.is_idle if self.can_idle() else None
         self._controlling = self.part.schedule(config.control_rate, before=self._control, idle=idle)

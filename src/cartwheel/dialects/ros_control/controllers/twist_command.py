@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from cartwheel.devices.drives.timeouts import CommandTimeouts
 from cartwheel.dialects.ros_control.controller import Controller
 
 _NEVER = -(1 << 62)
@@ -26,6 +27,8 @@ class TwistCommand:
     ) -> None:
         self._part = controller.part
         self._timeout_ns = round(timeout * 1e9)
+        if self._timeout_ns > 0:
+            controller.shared.get(CommandTimeouts).set(controller.node, timeout)
         self._stamped = stamped
         self.stop()
         controller.subscribe(
