@@ -7,6 +7,7 @@ from tests.corpus.test_rivals import MANAGER, managed
 from cartwheel.codes.devices import (
     CONTROLLERS_NOT_FOUND,
     HARDWARE_NOT_SIMULATED,
+    PLUGIN_MISPLACED,
     PLUGIN_UNKNOWN,
 )
 from cartwheel.codes.tags import TAG_IGNORED
@@ -111,6 +112,28 @@ def test_controllers_that_are_only_loaded_are_not_why_unsupported_hardware_does_
     arm = managed("Effort").replace(MANAGER, OTHER.format("libmy_hw_gazebo_plugin.so"))
     verdict = try_robot(written(tmp_path, box, arm), standing=1.0)
     assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN]
+
+
+@pytest.mark.parametrize(
+    ("name", "drive", "moves"),
+    [
+        ("gazebo_ros_control", "", True),
+        ("gazebo_ros_factory", "", False),
+        ("gazebo_ros_control", plugin(), False),
+    ],
+    ids=["control", "factory", "driven"],
+)
+def test_a_plugin_that_gazebo_refuses_should_move_a_robot_if_its_name_says_so(
+    tmp_path, name, drive, moves
+):
+    refused = f'<gazebo><plugin name="{name}" filename="libgazebo_ros_factory.so"/></gazebo>'
+    arm = managed("Effort").replace(MANAGER, refused)
+    verdict = try_robot(written(tmp_path, cart(), drive, arm), standing=1.0)
+    assert [(each.test, each.code) for each in verdict.faults] == [
+        ("plugin", PLUGIN_MISPLACED)
+    ] * moves
+    assert verdict.outcome == ("file" if moves else "good")
+    assert verdict.plugins == (("gazebo_ros_diff_drive",) if drive else ())
 
 
 @pytest.mark.parametrize("name", ["libmy_sensor.so", "libgazebo_ros_p3d.so"])

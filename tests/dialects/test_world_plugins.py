@@ -2,6 +2,7 @@
 
 import pytest
 
+from cartwheel.checks.checking import check
 from cartwheel.codes import devices, running
 from cartwheel.description import load_text
 from cartwheel.dialects import registry
@@ -39,7 +40,6 @@ def test_a_plugin_that_does_nothing_is_reported(filename, code):
     [
         "gz-sim-physics-system",
         "ignition-gazebo-user-commands-system",
-        "libgazebo_ros_factory.so",
         "libgazebo_ros_state.so",
         "gz-sim-sensors-system",
         "librotors_gazebo_ros_interface_plugin.so",
@@ -47,6 +47,42 @@ def test_a_plugin_that_does_nothing_is_reported(filename, code):
 )
 def test_what_is_built_in_is_not(filename):
     assert not reported(filename)
+
+
+@pytest.mark.parametrize("place", ["world", "model"])
+@pytest.mark.parametrize(
+    ("name", "refused"),
+    [
+        ("gazebo_ros_init", {"world": "server", "model": "server"}),
+        ("gazebo_ros_force_system", {"world": "server", "model": "server"}),
+        ("gazebo_ros_state", {"model": "world"}),
+        ("rotors_gazebo_ros_interface_plugin", {"model": "world"}),
+        ("gz-sim-physics-system", {}),
+    ],
+)
+def test_gazebo_loads_system_and_world_plugins_only_in_their_places(tmp_path, name, refused, place):
+    plugin = f'<plugin name="p" filename="lib{name}.so"/>'
+    inside = plugin if place == "world" else f'<model name="m"><link name="l"/>{plugin}</model>'
+    path = tmp_path / "w.world"
+    path.write_text(f'<sdf version="1.6"><world name="w">{inside}</world></sdf>')
+    session = Session(load_text(path.read_text(), file=str(path)))
+    session.close()
+    wanted = [refused[place]] if place in refused else []
+    for found in (session.diagnostics, check(path).findings):
+        places = [each.values["place"] for each in found if each.code is devices.PLUGIN_MISPLACED]
+        assert places == wanted
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"), [("p", ""), ("gazebo_ros_diff_drive", "libgazebo_ros_diff_drive.so")]
+)
+def test_the_name_of_a_refused_plugin_says_which_is_meant(name, meant):
+    plugin = f'<plugin name="{name}" filename="libgazebo_ros_factory.so"/>'
+    model = f'<model name="m"><link name="l"/>{plugin}</model>'
+    session = Session(load_text(f'<sdf version="1.6"><world name="w">{model}</world></sdf>'))
+    (found,) = [each for each in session.diagnostics if each.code is devices.PLUGIN_MISPLACED]
+    session.close()
+    assert found.values["meant"] == meant
 
 
 @pytest.mark.parametrize("place", ["world", "model"])

@@ -53,7 +53,6 @@ WORLD = """<sdf version="1.6"><world name="w">
     <ros><namespace>/states</namespace></ros></plugin>
   <plugin name="properties" filename="libgazebo_ros_properties.so">
     <ros><namespace>/demo</namespace></ros></plugin>
-  <plugin name="force" filename="libgazebo_ros_force_system.so"/>
 </world></sdf>"""
 ARM = """<model name="arm"><link name="base"/>
     <joint name="fix" type="fixed"><parent>world</parent><child>base</child></joint>

@@ -23,6 +23,7 @@ from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros_only import other_ros, other_tags
+from cartwheel.dialects.world_plugins import refused
 from cartwheel.errors import Diagnostic
 
 _CONTROL = frozenset(
@@ -108,6 +109,20 @@ def unmanaged_transmissions(verdict: Verdict, description: RobotDescription) -> 
     yield Fault(test="controller", subject=use.spawned[0], reason=reason)
 
 
+def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
+    """Controller managers that do not start in Gazebo because of a transmission, although
+    controllers should run. Cartwheel skips the transmission.
+    """
+    said = verdict.diagnostics
+    if not (verdict.controllers or verdict.spawned) or coded(said, LEFT_OUT) is not None:
+        # The missing part may contain the joint.
+        return
+    reason = next((each for each in said if each.values.get("stops") is True), None)
+    for tag in managers(description) if reason is not None else ():
+        if other_ros(description, tag) is None:
+            yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
 def missing_movers(
     verdict: Verdict, description: RobotDescription, *, held: bool
 ) -> Iterator[Fault]:
@@ -119,7 +134,7 @@ def missing_movers(
     all_moves = verdict.passes and _is_all_driven(verdict, description)
     for tag in moving_plugins(description):
         if is_known(tag):
-            reason = most_severe(
+            reason = refused(tag) or most_severe(
                 each
                 for each in said
                 if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
@@ -145,7 +160,7 @@ def missing_movers(
     if all(reason is not None for _, reason in loads):
         for tag, reason in loads:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
-    refused = {
+    unstarted = {
         each.values.get("controller"): each
         for each in said
         if each.code is running.CONTROLLER_NOT_STARTED
@@ -155,8 +170,8 @@ def missing_movers(
     for name in verdict.spawned:
         if name in verdict.controllers:
             continue
-        if name in refused and not _broadcasts(refused[name]):
-            reason = refused[name]
+        if name in unstarted and not _broadcasts(unstarted[name]):
+            reason = unstarted[name]
             unknown = reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number
             if unknown and not _is_prefixed(reason):
                 # The part that contains the joint may be in a file that is absent.
@@ -255,11 +270,11 @@ def _is_misplaced(each: Diagnostic) -> bool:
     return each.code is devices.CONTROLLER_UNDEFINED and "namespace" in each.values
 
 
-def _is_prefixed(refused: Diagnostic) -> bool:
+def _is_prefixed(unstarted: Diagnostic) -> bool:
     """Whether the unknown joint of a controller has a prefix that the robot's joint has not, or
     the other way round.
     """
-    name, meant = (str(refused.values.get(key) or "") for key in ("name", "meant"))
+    name, meant = (str(unstarted.values.get(key) or "") for key in ("name", "meant"))
     return bool(name and meant) and (name.endswith(meant) or meant.endswith(name))
 
 
@@ -282,10 +297,10 @@ def _contains(each: Diagnostic, controller: str) -> bool:
     )
 
 
-def _broadcasts(refused: Diagnostic) -> bool:
+def _broadcasts(unstarted: Diagnostic) -> bool:
     """Whether a controller of unknown type only publishes, because its type says so."""
-    unknown = refused.values.get("cause") == devices.CONTROLLER_TYPE_UNKNOWN.number
-    return unknown and str(refused.values.get("name")).endswith(_BROADCASTER)
+    unknown = unstarted.values.get("cause") == devices.CONTROLLER_TYPE_UNKNOWN.number
+    return unknown and str(unstarted.values.get("name")).endswith(_BROADCASTER)
 
 
 def _concerns(each: Diagnostic, tag: PluginTag) -> bool:

@@ -9,7 +9,7 @@ from cartwheel.codes.tags import TAG_IGNORED
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
-from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
+from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT, refused
 from cartwheel.errors import Diagnostic
 
 _MOVES = re.compile(
@@ -58,7 +58,9 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     An unsupported plugin also counts if its tags contain the name of a movable joint, if a tag is
     named after gains, forces, motors, velocity commands or trajectories, if its own name contains a
     word such as "move" or "servo", or if nothing else moves a robot with wheels or with joints for
-    controllers, unless its own name says that it only measures.
+    controllers, unless its own name says that it only measures. In such a robot, a plugin that
+    Gazebo refuses to load in a model counts if its name says that it moves something, such as
+    ``gazebo_ros_control``.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
     waits = _waits(robot)
@@ -69,6 +71,7 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         and not _RECORDS.search(name)
         and (
             _MOVES.search(name)
+            or (waits and is_mover(tag.name) and refused(tag) is not None)
             or (
                 may_move(tag.filename)
                 and (waits or _TRAVELS.search(name) or _acts(tag.element, joints))

@@ -48,7 +48,7 @@ from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.selection import selection, with_published_control
-from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT
+from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT, refused
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
 
 STANDING = 10.0
@@ -219,7 +219,7 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         *robot.plugins,
         *(tag for link in robot.links for one in link.sensors for tag in one.plugins),
     ]
-    names = list(dict.fromkeys(short_name(tag.filename) for tag in tags))
+    names = list(dict.fromkeys(short_name(tag.filename) for tag in tags if refused(tag) is None))
     known = {name for name in names if plugin_named(name) or name in BUILT_IN}
     return replace(
         verdict,

@@ -28,6 +28,7 @@ from cartwheel.dialects.world_plugins import (
     Faults,
     create,
     misplaced,
+    refused,
     without_effect,
 )
 from cartwheel.errors import CartwheelError, StaticModelError
@@ -69,6 +70,8 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             # In this order: a world may have thousands of models without plugins.
             own_system = short_name(tag.filename).startswith("gz-sim-") and _is_of_world(part)
             if plugin is None and short_name(tag.filename) in BUILT_IN:
+                if (wrong := refused(tag)) is not None:
+                    part.report(wrong)
                 continue
             if plugin is None and short_name(tag.filename) in WITHOUT_EFFECT:
                 part.report(without_effect(tag))

@@ -17,19 +17,27 @@ from cartwheel.simulation.models.resident import Behaviour
 
 Faults = tuple[type[CartwheelError], ...]
 
+_OF_SERVER = frozenset(
+    {
+        "gazebo_ros_init",
+        "gazebo_ros_factory",
+        "gazebo_ros_force_system",
+        "gazebo_ros_api_plugin",
+        "gazebo_ros_paths_plugin",
+    }
+)
+"""System plugins of Gazebo Classic, which it loads neither in a world nor in a model."""
+_OF_WORLD = frozenset(
+    {"gazebo_ros_state", "gazebo_ros_properties", "rotors_gazebo_ros_interface_plugin"}
+)
+"""World plugins of Gazebo Classic, which it does not load in a model."""
 BUILT_IN = {
     *SYSTEMS,
     "gz-sim-physics-system",
     "gz-sim-user-commands-system",
     "gz-sim-scene-broadcaster-system",
-    "gazebo_ros_init",
-    "gazebo_ros_factory",
-    "gazebo_ros_force_system",
-    "gazebo_ros_state",
-    "gazebo_ros_properties",
-    "gazebo_ros_api_plugin",
-    "gazebo_ros_paths_plugin",
-    "rotors_gazebo_ros_interface_plugin",
+    *_OF_SERVER,
+    *_OF_WORLD,
 }
 """Plugins for physics, spawning, time, sensors and ROS, which Cartwheel always provides."""
 DISPLAY_ONLY = frozenset(
@@ -90,6 +98,26 @@ def misplaced(tag: PluginTag, place: str) -> Diagnostic:
         f'plugin "{tag.filename}" has no effect here because it must be inside a <{place}>',
         origin=tag.origin,
         values={"name": tag.filename, "place": place},
+    )
+
+
+def refused(tag: PluginTag, *, in_world: bool = False) -> Diagnostic | None:
+    """Returns the diagnostic for a built-in plugin that Gazebo refuses to load in a model, or in a
+    world; None if it loads the plugin.
+    """
+    name = short_name(tag.filename)
+    if name in _OF_WORLD and not in_world:
+        return misplaced(tag, "world")
+    if name not in _OF_SERVER:
+        return None
+    meant = f"lib{tag.name}.so" if plugin_named(tag.name) is not None else ""
+    return devices.PLUGIN_MISPLACED.diagnostic(
+        f'plugin "{tag.filename}" has no effect here because Gazebo loads it only when it starts',
+        origin=tag.origin,
+        hint=f'Its name suggests that "{meant}" is meant.'
+        if meant
+        else "Remove it: the launch files of gazebo_ros load it.",
+        values={"name": tag.filename, "place": "server", "meant": meant},
     )
 
 
@@ -174,6 +202,8 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
     for tag in part.world.plugins:
         name = short_name(tag.filename)
         if name in BUILT_IN:
+            if (wrong := refused(tag, in_world=True)) is not None:
+                part.report(wrong)
             continue
         if name in WITHOUT_EFFECT:
             part.report(without_effect(tag))

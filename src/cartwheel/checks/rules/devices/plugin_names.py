@@ -13,7 +13,7 @@ from cartwheel.description.model import WorldDescription
 from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.ros_only import other_ros, other_tags, unread_tags
 from cartwheel.dialects.substitutes import substitute
-from cartwheel.dialects.world_plugins import misplaced
+from cartwheel.dialects.world_plugins import misplaced, refused
 from cartwheel.errors import Diagnostic
 from cartwheel.similar_names import meant_one
 
@@ -60,13 +60,17 @@ def plugin_misplaced(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for tag, sensor in robot.plugins():
             plugin = plugin_named(tag.filename)
-            if plugin is not None and plugin.for_world:
+            if (wrong := refused(tag)) is not None:
+                yield wrong
+            elif plugin is not None and plugin.for_world:
                 yield misplaced(tag, "world")
             elif plugin is not None and plugin.for_sensor and sensor is None:
                 yield misplaced(tag, "sensor")
     for tag in subject.read.plugins if isinstance(subject.read, WorldDescription) else ():
         plugin = plugin_named(tag.filename)
-        if plugin is not None and not (plugin.for_world or plugin.also_in_world):
+        if (wrong := refused(tag, in_world=True)) is not None:
+            yield wrong
+        elif plugin is not None and not (plugin.for_world or plugin.also_in_world):
             yield misplaced(tag, "model")
 
 
