@@ -32,6 +32,7 @@ from cartwheel.corpus.missing_movers import (
     held_bases,
     is_started,
     missing_movers,
+    stopped_managers,
     unmanaged_hardware,
     unmanaged_transmissions,
 )
@@ -143,7 +144,11 @@ def _faults(
         # What is driven here instead does not matter.
         instead = (devices.HARDWARE_NOT_SIMULATED, devices.HARDWARE_UNKNOWN)
         missing = {name: fault for name, fault in missing.items() if fault.code not in instead}
-    missing |= unmanaged
+    stopped_ones = {each.subject: each for each in stopped_managers(verdict, description)}
+    if stopped_ones:
+        # Which of its controllers would not start does not matter.
+        missing = {name: each for name, each in missing.items() if each.test != "controller"}
+    missing |= stopped_ones | unmanaged
     missing |= {each.subject: each for each in unmanaged_transmissions(verdict, description)}
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)

@@ -11,8 +11,9 @@ from typing import Literal
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST, MOST_RATIO
 from cartwheel.description.model import Element, RobotDescription
+from cartwheel.dialects.stopping import CONSEQUENCE, refused_interface, stops
 from cartwheel.dialects.tags import invalid
-from cartwheel.errors import Code, Diagnostic, Origin, Value
+from cartwheel.errors import Code, Diagnostic, Origin, Severity, Value
 from cartwheel.simulation.limits import FARTHEST
 
 COMMANDS = ("position", "velocity", "effort")
@@ -82,8 +83,16 @@ def transmissions(
     by_name: dict[str, JointInterfaces] = {}
     notes: list[Diagnostic] = []
 
-    def warn(code: Code, element: Element, message: str, **values: Value) -> None:
-        notes.append(code.diagnostic(message, origin=element.origin, values=values))
+    def warn(
+        code: Code,
+        element: Element,
+        message: str,
+        severity: Severity | None = None,
+        **values: Value,
+    ) -> None:
+        notes.append(
+            code.diagnostic(message, severity=severity, origin=element.origin, values=values)
+        )
 
     for element in description.transmissions:
         label = f'transmission "{element.attribute("name") or ""}"'
@@ -114,11 +123,17 @@ def transmissions(
                     for interface in actuator.find_all("hardwareInterface")
                 ]
             commands: list[str] = []
+            refused = None if several else refused_interface(element, joint)
+            if refused is not None:
+                offered = refused.text.strip()
+                text = f'{label}: DefaultRobotHWSim does not offer "{offered}", {CONSEQUENCE}'
+                unknown = devices.INTERFACE_UNKNOWN
+                warn(unknown, refused, text, "error", interface=offered, stops=True)
             for interface in written:
                 short = interface.text.strip().rpartition("/")[2]
                 if short in _HARDWARE:
                     commands.append(_HARDWARE[short])
-                elif short not in _STATES_ONLY:
+                elif short not in _STATES_ONLY and interface is not refused:
                     text = f'{label}: the hardware interface "{interface.text}" does not exist'
                     warn(devices.INTERFACE_UNKNOWN, interface, text, interface=interface.text)
             if not written:
@@ -126,7 +141,10 @@ def transmissions(
                 warn(devices.TRANSMISSION_IGNORED, element, text, joint=name)
             if not _movable(description, name):
                 text = f'{label}: "{name}" is not a movable joint'
-                warn(devices.TRANSMISSION_JOINT_UNKNOWN, element, text, joint=name)
+                stopped = not several and stops(description, element, joint)
+                text += f", {CONSEQUENCE}" if stopped else ""
+                code = devices.TRANSMISSION_JOINT_UNKNOWN
+                warn(code, element, text, joint=name, stops=stopped)
                 continue
             before = by_name[name].commands if name in by_name else ()
             by_name[name] = JointInterfaces(

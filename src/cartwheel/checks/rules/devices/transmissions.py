@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.checks import edits, spelling
-from cartwheel.checks.controller_claims import managers
+from cartwheel.checks.controller_claims import has_standard_hardware, managers
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject, is_known
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element
 from cartwheel.dialects.ros_control.interfaces import ros2_control, transmissions
+from cartwheel.dialects.stopping import CONSEQUENCE
 from cartwheel.errors import Code, Diagnostic
 
 _INTERFACES = tuple(
@@ -27,17 +28,15 @@ _COMMANDS = ("position", "velocity", "effort", "acceleration")
 
 @rule(devices_codes.TRANSMISSION_JOINT_UNKNOWN)
 def transmission_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
-    for robot, joint in _driven_by(subject, "transmission"):
-        yield from _joint_named(devices_codes.TRANSMISSION_JOINT_UNKNOWN, subject, robot, joint)
+    code = devices_codes.TRANSMISSION_JOINT_UNKNOWN
     for robot in subject.robots:
-        if managers(robot, ros2=False):
-            notes = transmissions(robot.description)[1]
-            yield from (
-                each
-                for each in notes
-                if each.code is devices_codes.TRANSMISSION_JOINT_UNKNOWN
-                and each.values.get("joint") in robot.joint_names
-            )
+        notes = _notes(robot, code)
+        stopping = {each.origin for each in notes if each.values["stops"] is True}
+        for element in robot.description.transmissions:
+            for joint in element.find_all("joint"):
+                stops = element.origin in stopping
+                yield from _joint_named(code, subject, robot, joint, stops=stops)
+        yield from (each for each in notes if each.values["joint"] in robot.joint_names)
 
 
 @rule(devices_codes.ROS2_CONTROL_JOINT_UNKNOWN)
@@ -67,31 +66,57 @@ def control_without_joints(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(devices_codes.INTERFACE_UNKNOWN)
 def interface_unknown(subject: Subject) -> Iterator[Diagnostic]:
+    code = devices_codes.INTERFACE_UNKNOWN
+    stopping = {
+        each.origin: each
+        for robot in subject.robots
+        for each in _notes(robot, code)
+        if each.values.get("stops") is True
+    }
     for _, joint in _driven_by(subject, "transmission"):
         for element in joint.find_all("hardwareInterface"):
             name = element.text.strip()
             near = spelling.meant(name, _INTERFACES, parts=False)
+            stops = stopping.get(element.origin)
             if name not in _INTERFACES and near:
-                yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
-                    message=f'the interface "{name}" does not exist',
-                    values={"tag": "hardwareInterface", "interface": name, "meant": near},
+                yield code.diagnostic(
+                    message=f'the interface "{name}" does not exist'
+                    + (f", {CONSEQUENCE}" if stops is not None else ""),
+                    severity=None if stops is None else stops.severity,
+                    values={
+                        "tag": "hardwareInterface",
+                        "interface": name,
+                        "meant": near,
+                        "stops": stops is not None,
+                    },
                     **edits.text(element, near),
                 )
+            elif stops is not None and stops.values["interface"] == name:
+                yield stops
     for _, joint in _driven_by(subject, "ros2_control"):
         for element in joint.children:
             name = (element.attribute("name") or "").strip()
             near = spelling.meant(name, _COMMANDS, parts=False)
             if element.tag not in ("command_interface", "state_interface") or not near:
                 continue
-            yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
+            yield code.diagnostic(
                 message=f'the {element.tag} "{name}" does not exist',
                 values={"tag": element.tag, "interface": name, "meant": near},
                 **edits.attribute(element, "name", near, mark=name),
             )
 
 
+def _notes(robot: Robot, code: Code) -> list[Diagnostic]:
+    """The diagnostics with a code that ROS 1's plugin of a robot reports about transmissions."""
+    if not managers(robot, ros2=False):
+        return []
+    several = not has_standard_hardware(robot, ros2=False)
+    notes = transmissions(robot.description, several=several)[1]
+    return [each for each in notes if each.code is code]
+
+
 def _joint_named(
-    code: Code, subject: Subject, robot: Robot, joint: Element
+    code: Code, subject: Subject, robot: Robot, joint: Element, *, stops: bool = False
 ) -> Iterator[Diagnostic]:
     name = (joint.attribute("name") or "").strip()
     if not name or is_known(name, robot, subject):
@@ -102,8 +127,9 @@ def _joint_named(
         name,
         robot.joint_names,
         attribute="name",
-        message=f'<{what}> refers to the joint "{name}", which does not exist',
-        values={"tag": what, "joint": name},
+        message=f'<{what}> refers to the joint "{name}", which does not exist'
+        + (f", {CONSEQUENCE}" if stops else ""),
+        values={"tag": what, "joint": name, "stops": stops},
         origin=joint.origin,
         mark=f'name="{joint.attribute("name")}"',
     )
