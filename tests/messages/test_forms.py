@@ -58,7 +58,7 @@ def check_bytes(name: str, *, ros1: bool) -> None:
     form = Form(template, *(place.path for place in varying))
     for _ in range(2):
         values = [value(place, chance) for place in varying]
-        message = form.message(*values)
+        message = form.message(values)
         assert form.encode(values) == encode_cdr(message), name
         for place, given in zip(varying, values, strict=True):
             assert np.array_equal(at(message, place.path), given), (name, place.path)
@@ -103,11 +103,11 @@ def test_values_are_times_vectors_and_arrays() -> None:
             },
         },
     )
-    assert encode_cdr(form.message(*values)) == encode_cdr(made)
+    assert encode_cdr(form.message(values)) == encode_cdr(made)
     assert form.encode(values) == encode_cdr(made)
     assert form.encode_ros1(values, seq=1 << 32 | 9) == encode_ros1(made, seq=9)
     # Headers of the same time and frame are shared, as those of `header`.
-    assert form.message(*values).header is header(12_000_000_034, "odom")
+    assert form.message(values).header is header(12_000_000_034, "odom")
 
 
 def test_messages_of_a_list_with_a_common_time() -> None:
@@ -118,13 +118,42 @@ def test_messages_of_a_list_with_a_common_time() -> None:
         ("transforms.0.header.stamp", "transforms.1.header.stamp"),
         "transforms.1.transform.translation",
     )
-    made = form.message(5, (1.0, 2.0, 3.0))
+    made = form.message((5, (1.0, 2.0, 3.0)))
     assert [each.header.stamp.nanosec for each in made.transforms] == [5, 5]
     assert made.transforms[0].header is made.transforms[1].header
     assert [each.child_frame_id for each in made.transforms] == ["left", "right wheel"]
     assert [each.transform.translation.x for each in made.transforms] == [0.0, 1.0]
     assert form.encode((5, (1.0, 2.0, 3.0))) == encode_cdr(made)
     assert form.encode_ros1((5, (1.0, 2.0, 3.0))) == encode_ros1(made)
+
+
+def test_headers_of_two_times_in_turns_are_shared() -> None:
+    """The transforms of wheels have other times than the other messages of their frame."""
+    form = Form(message_class(JOINTS)(header(0, "wheel")), "header.stamp")
+    one, other = form.message((7,)).header, form.message((8,)).header
+    for _ in range(2):
+        assert form.message((7,)).header is one is header(7, "wheel")
+        assert form.message((8,)).header is other is header(8, "wheel")
+    assert (one.stamp.nanosec, other.stamp.nanosec) == (7, 8)
+
+
+def test_forms_with_the_same_texts_share_their_function() -> None:
+    def made(frame: str, names: list[str] | None = None) -> Any:
+        template = zero(TF if names is None else JOINTS)
+        if names is None:
+            template.transforms = [from_dict("geometry_msgs/msg/TransformStamped", {})]
+            template.transforms[0].header.frame_id = frame
+            return Form(template, "transforms.0.header.stamp", "transforms.0.transform.rotation")
+        template.name = names
+        return Form(template, "header.stamp")
+
+    def fields(form: Form) -> Any:
+        return form.message((7, (0.0, 0.0, 0.0, 1.0))).transforms[0]
+
+    assert fields(made("odom")).header.frame_id == "odom"
+    assert fields(made("map")).header.frame_id == "map"
+    assert made("odom", ["a"]).message((7,)).name == ["a"]
+    assert made("odom", ["b"]).message((7,)).name == ["b"]
 
 
 @pytest.mark.parametrize(
@@ -154,7 +183,7 @@ _NO_NUMBERS = ("child_frame_id", "header", "pose.pose")
 def test_fields_that_do_not_exist_or_do_not_consist_of_numbers(path: str) -> None:
     for form in (Form(zero(ODOMETRY), path), Form(lambda: zero(ODOMETRY), path)):
         with pytest.raises(ValueError, match=path):
-            form.message(1.0)
+            form.message((1.0,))
         with pytest.raises(ValueError, match=path):
             form.cdr(1.0)
 
@@ -169,7 +198,7 @@ def test_an_array_keeps_its_length() -> None:
 def test_empty_arrays_and_names_stay_those_of_the_template() -> None:
     template = message_class(JOINTS)(header(0, ""), ["a", "b"], np.zeros(2))
     form = Form(template, "header.stamp", "position")
-    made = form.message(7, np.array([1.0, 2.0]))
+    made = form.message((7, np.array([1.0, 2.0])))
     assert made.name is template.name
     assert (made.position.tolist(), made.velocity.size) == ([1.0, 2.0], 0)
     assert form.encode((7, made.position)) == encode_cdr(made)

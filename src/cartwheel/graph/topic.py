@@ -230,7 +230,7 @@ class Publisher(Generic[M]):
                     topic.failed(topic, callback, error)
             return
         # This is `publish` inlined, for the same reason.
-        message = form.message(*values)
+        message = form.message(values)
         self.sent += 1
         if self.qos == "latched":
             topic.latched = message

@@ -26,8 +26,10 @@ all other messages.
 
 The tuple is always replaced as a whole, because simulations in several threads may share it.
 """
-newest_headers: dict[str, tuple[int, Any]] = {}
-"""The last header of each frame, with its time in ns. Only `header` changes it."""
+_NONE = (None, None, None, None)
+newest_headers: dict[str, tuple[int, Any, int | None, Any]] = {}
+"""The last two headers of each frame, the newest first, each after its time in ns. Only `header`
+changes it."""
 _MOST_FRAMES = 1000
 
 
@@ -46,11 +48,13 @@ def stamp(time_ns: int) -> Any:
 
 def header(time_ns: int, frame: str) -> Any:
     """``std_msgs/Header``, shared by messages with the same time and frame. It must not change."""
-    known = newest_headers.get(frame)
-    if known is not None and known[0] == time_ns:
-        return known[1]
+    newest, made, older, before = newest_headers.get(frame, _NONE)
+    if newest == time_ns:
+        return made
+    if older == time_ns:
+        return before
     if len(newest_headers) > _MOST_FRAMES:
         newest_headers.clear()
-    made = _header_class()(stamp(time_ns), frame)
-    newest_headers[frame] = (time_ns, made)
+    made, before = _header_class()(stamp(time_ns), frame), made
+    newest_headers[frame] = (time_ns, made, newest, before)
     return made

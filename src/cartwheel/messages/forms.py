@@ -66,23 +66,25 @@ class Form:
         return made
 
     @functools.cached_property
-    def message(self) -> Callable[..., Any]:
+    def message(self) -> Callable[[Sequence[Any]], Any]:
         """Creates the message with the given values."""
         names: dict[str, Any] = {
-            "header": header, "newest": newest_headers.get, "none": (None, None), "stamp": stamp
+            "header": header, "newest": newest_headers.get, "stamp": stamp
         }  # fmt: skip
         assert self._leaves
         headers: dict[tuple[str, str], str] = {}
         made = self._expression(self.template, "", names, headers)
-        lines: list[str] = []
+        # Python calls a function with one argument faster than one with a sequence of arguments.
+        lines = [f"[{', '.join(self._arguments())}] = values"]
         for (time, frame), local in headers.items():
             # Mostly, another message had the same header. A call of `header` takes longer.
             lines += (
-                f"{local} = newest({frame}, none)",
-                f"{local} = {local}[1] if {local}[0] == {time} else header({time}, {frame})",
+                f"{local} = newest({frame}, (None, None, None, None))",
+                f"{local} = {local}[1] if {local}[0] == {time} else {local}[3] if "
+                f"{local}[2] == {time} else header({time}, {frame})",
             )
-        created: Callable[..., Any] = _function(
-            "message", self._arguments(), (*lines, f"return {made}"), names
+        created: Callable[[Sequence[Any]], Any] = _function(
+            "message", ("values",), (*lines, f"return {made}"), names
         )
         return created
 
@@ -258,10 +260,12 @@ def _numbers(value: Any, path: str) -> list[str]:
 
 
 def _named(names: dict[str, Any], value: Any) -> str:
-    """The global name of a constant value. Equal texts, such as frames, have the same name."""
-    if isinstance(value, str):
+    """The global name of a constant value. Equal texts, such as frames, have the same name, and so
+    has each class.
+    """
+    if isinstance(value, str | type):
         for name, known in names.items():
-            if isinstance(known, str) and known == value:
+            if isinstance(known, str | type) and known == value:
                 return name
     name = f"c{len(names)}"
     names[name] = value
@@ -286,6 +290,20 @@ def _function(
     """
     inner = "\n        ".join((f"def {name}({', '.join(arguments)}):", *lines))
     text = f"def enclosing({', '.join(names)}):\n    {inner}\n    return {name}"
+    if all(isinstance(value, str) or callable(value) for value in names.values()):
+        return _shared(text, tuple(names.items()))
+    return _enclosed(text, names)
+
+
+@functools.lru_cache(256)
+def _shared(text: str, names: tuple[tuple[str, Any], ...]) -> Any:
+    """The function of all robots with the same frames: for the others, it is in the processor's
+    caches.
+    """
+    return _enclosed(text, dict(names))
+
+
+def _enclosed(text: str, names: dict[str, Any]) -> Any:
     made: dict[str, Any] = {}
     exec(_compiled(text), made)  # noqa: S102 - all names in it are made here
     return made["enclosing"](**names)

@@ -40,8 +40,7 @@ def maker(type_name: str, names: Sequence[str]) -> Maker:
     template = from_dict(type_name, _filled(type_name, _tree(paths, [0.0] * len(names))))
     places = _tree(paths, range(len(names)))
     if _are_floats(type_name, places):
-        made = Form(template, *names).message
-        return lambda values: made(*values)
+        return Form(template, *names).message
     return lambda values: from_dict(type_name, _filled(type_name, _tree(paths, values)))
 
 

@@ -63,7 +63,7 @@ def test_recorders_receive_the_bytes_of_the_same_message(reported, topic):
     made.world.graph.subscribe(topic, print, take_values=lambda *given: taken.append(given))
     made.world.run(0.1)
     form, values = taken[-1]
-    same = form.message(*values)
+    same = form.message(values)
     assert form.encode(values) == encode_cdr(same)
     assert same.header.frame_id == message.header.frame_id
     assert len(encode_cdr(same)) == len(encode_cdr(message))  # the same names and lengths
