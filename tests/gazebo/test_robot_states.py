@@ -182,3 +182,21 @@ def test_nothing_is_made_for_nobody_and_a_deleted_robot_is_gone(
     assert heard.static == []
     states.close()
     session.close()
+
+
+def test_nothing_is_computed_if_plugins_publish_all_joints(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = session_with(("rosbots", load_robot("rosbots.xacro")))
+    states_of(session)
+    asked: list[bool] = []
+    transforms = RobotStates.transforms
+    monkeypatch.setattr(
+        RobotStates, "transforms", lambda *given, **named: asked.append(True) or transforms(*given)
+    )
+    heard = Listener(session)
+    session.simulation.advance(10**8)
+    assert heard.moving
+    assert not asked
+    session.spawn(load_text(ARM, file="arm.urdf"), name="arm")
+    session.simulation.advance(2 * 10**8)
+    assert asked
+    session.close()

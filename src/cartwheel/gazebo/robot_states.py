@@ -76,6 +76,8 @@ class RobotStates:
         self._publisher: Publisher | None = None
         self._others: frozenset[str] = frozenset()
         self._robots: dict[str, _Robot] = {}
+        self._moves = False
+        """Whether one of the robots has joints whose transforms are published again and again."""
         self._version = -1
         self._warned: set[str] = set()
         self._looking = simulation.schedule(_LOOK, before=self._look, active=self._is_due)
@@ -119,7 +121,7 @@ class RobotStates:
         return self._version != self._simulation.scene.version
 
     def _wanted(self) -> bool:
-        return self._publisher is not None and self._publisher.wanted
+        return self._moves and self._publisher is not None and self._publisher.wanted
 
     def _is_anothers(self, name: str) -> bool:
         return TOPIC in self._others or self._descriptions.topic(name) in self._others
@@ -166,6 +168,7 @@ class RobotStates:
             fixed = [JointPose(description, joint) for joint in joints if joint.type == "fixed"]
             if fixed:
                 static.put((NODE, name), _transforms(0, fixed, {}, prefix))
+        self._moves = any(robot.moving for robot in self._robots.values())
         # Advertise only if there is something to publish, so that /tf shows the actual publisher.
         if self._robots and self._publisher is None:
             self._publisher = self._graph.advertise(
