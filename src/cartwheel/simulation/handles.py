@@ -6,8 +6,8 @@ again, so a plugin can keep its handles. Use them only on the simulation's threa
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from math import atan2, cos, sin
 from typing import Any
 
 import mujoco
@@ -34,7 +34,7 @@ from cartwheel.simulation.dynamics.wheel_slip import SlipHandle
 from cartwheel.world.entry import ROTOR, scoped
 
 _OBJ = mujoco.mjtObj
-_XBODY = _OBJ.mjOBJ_XBODY
+_XBODY = _OBJ.mjOBJ_XBODY.value  # Converting an enumeration takes a quarter of a call.
 _JOINT = mujoco.mjtJoint
 _MOTOR_ROW = mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON.value
 
@@ -104,13 +104,19 @@ class LinkHandle:
             wz,
         )
 
-    def planar_motion_at(self, point: Sequence[float]) -> Vec3:
-        """The parts in x, y and about z of `motion_at`: m/s, m/s and rad/s."""
+    def planar_motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
+        """`place`, and the velocity in the plane along the heading, m/s and rad/s."""
+        # This is `place`, `motion_at` and `yaw_of` inlined: it runs for each message of odometry.
+        x, y, z = place = tuple(self._position.tolist())
+        qw, qx, qy, qz = self._quaternion.tolist()
         wx, wy, wz, vx, vy, _ = self._spatial.tolist()
-        x, y, z = point
         cx, cy, cz = self._centre.tolist()
         z -= cz
-        return vx - ((y - cy) * wz - z * wy), vy - (z * wx - (x - cx) * wz), wz
+        vx -= (y - cy) * wz - z * wy
+        vy -= z * wx - (x - cx) * wz
+        yaw = atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
+        c, s = cos(yaw), sin(yaw)
+        return place, (qx, qy, qz, qw), (c * vx + s * vy, c * vy - s * vx, 0.0), (0.0, 0.0, wz)
 
     def velocity(self, *, local: bool) -> tuple[Array, Array]:
         """Linear velocity of the link's origin in m/s and angular velocity in rad/s, each shape
@@ -129,6 +135,14 @@ class LinkHandle:
             offset: The accelerometer's position in the link, m.
         """
         return self._acceleration(offset)[0]
+
+    def felt(self, offset: Sequence[float]) -> list[float]:
+        """`proper_acceleration` as plain numbers, for high-rate access."""
+        if any(offset) or not self.moves:
+            return [*self._acceleration(offset)[0].tolist()]
+        self._find_accelerations()
+        mujoco.mj_objectAcceleration(self._model, self._data, _XBODY, self.id, self._six, 1)
+        return [*self._six.tolist()[3:]]
 
     def acceleration(self, offset: Sequence[float] = (0.0, 0.0, 0.0)) -> tuple[Vec3, Vec3]:
         """Linear and angular acceleration of a point on the link, m/s² and rad/s², in world axes.
@@ -268,11 +282,6 @@ class JointHandle:
         """
 
     @property
-    def places(self) -> tuple[int, int]:
-        """Indices of the position and the velocity in the model's arrays."""
-        return self.qposadr, self.dofadr
-
-    @property
     def position(self) -> float:
         """Position, rad or m."""
         position: float = self.qpos[self.qposadr]
@@ -316,9 +325,9 @@ class JointHandle:
         # The orientation at rest times the rotation: this runs for each wheel at the rate of
         # odometry.
         half = moved / 2
-        sin, cos = math.sin(half), math.cos(half)
+        s, c = sin(half), cos(half)
         ax, ay, az, aw, x, y, z, w = self._terms
-        turn = (ax * cos + x * sin, ay * cos + y * sin, az * cos + z * sin, aw * cos + w * sin)
+        turn = (ax * c + x * s, ay * c + y * s, az * c + z * s, aw * c + w * s)
         if not self._off_centre:
             return self._rest, turn
         # The anchor is fixed.
@@ -341,9 +350,8 @@ class JointsHandle:
     def bind(self, model: Any, data: Any) -> None:  # noqa: ARG002 - all handles bind alike
         """Stores the joints' indices in a compiled model."""
         self._qpos, self._qvel = data.qpos, data.qvel
-        places = [joint.places for joint in self._joints]
-        self._positions_at = np.array([position for position, _ in places], dtype=np.intp)
-        self._velocities_at = np.array([velocity for _, velocity in places], dtype=np.intp)
+        self._positions_at = np.array([joint.qposadr for joint in self._joints], dtype=np.intp)
+        self._velocities_at = np.array([joint.dofadr for joint in self._joints], dtype=np.intp)
 
     def positions(self) -> Array:
         """Positions, rad or m; a new array of shape (joints,)."""

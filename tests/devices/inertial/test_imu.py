@@ -192,10 +192,10 @@ def test_nothing_is_measured_for_nobody(make, monkeypatch):
     from cartwheel.simulation.handles import LinkHandle
 
     calls = []
-    measure = LinkHandle.proper_acceleration
+    measure = LinkHandle.felt
     monkeypatch.setattr(
         LinkHandle,
-        "proper_acceleration",
+        "felt",
         lambda self, *a: calls.append(1) or measure(self, *a),
     )
     world = make.world(make.sdf(unit("0 0 0.05 0 0 0")))

@@ -13,7 +13,6 @@ from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.kinematics import rim_speeds
 from cartwheel.devices.drives.limiter import NO_LIMITS, Limiter, Limits
-from cartwheel.devices.drives.odometry import planar_motion
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
 from cartwheel.devices.elementwise import clamp
 from cartwheel.devices.ramp import ramp
@@ -240,7 +239,7 @@ class DifferentialDrive(Drive):
         return self._speeds[0], self._speeds[1]
 
     def motion(self) -> Motion:
-        return planar_motion(self._base) if self._is_true else self.reckoning.motion()
+        return self._base.planar_motion() if self._is_true else self.reckoning.motion()
 
     def _rest(self) -> None:
         self._command = self._limited = (0.0, 0.0)

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cartwheel.component import Component
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of, planar_motion
+from cartwheel.component import Component, Scope
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of
 from cartwheel.devices.drives.reckoning import Motion
 from cartwheel.devices.drives.timeouts import CommandTimeouts
 from cartwheel.devices.joints.states import JointStates, JointStatesConfig
@@ -50,12 +50,15 @@ class Drive(Component):
     velocity that the odometry contains.
     """
 
-    _odometry: Odometry | None = None
-    _joint_states: JointStates | None = None
     sideways: ClassVar[bool] = False
     """Whether ``linear.y`` of the commands is followed."""
     enabled: bool = True
     """Whether commands move the robot. Requires a `timeout`."""
+
+    def __init__(self, scope: Scope) -> None:
+        super().__init__(scope)
+        self._odometry: Odometry | None = None
+        self._joint_states: JointStates | None = None
 
     def run(self, config: DriveConfig, *, reads_state: bool = False) -> None:
         """Advertises topics, subscribes to commands and schedules the control loop.
@@ -131,14 +134,16 @@ class Drive(Component):
 
     def motion(self) -> Motion:
         """Returns pose and velocity for the odometry: by default, those in the world."""
-        return planar_motion(self._base)
+        return self._base.planar_motion()
 
     def publish(self, time_ns: int) -> None:
         """Publishes on the topics that have subscribers."""
-        if self._joint_states is not None and self._joint_states.wanted():
-            self._joint_states.publish(time_ns)
-        if self._odometry is not None and self._odometry.wanted():
-            self._odometry.publish(time_ns, *self.motion())
+        states, odometry = self._joint_states, self._odometry
+        if states is not None and states.publisher.wanted:
+            states.publish(time_ns)
+        if odometry is not None and odometry.wanted():
+            place, turn, linear, angular = self.motion()
+            odometry.publish(time_ns, place, turn, linear, angular)
 
     def _on_command(self, message: Any) -> None:
         linear, angular = message.linear, message.angular
@@ -157,11 +162,11 @@ class Drive(Component):
             self.command(0.0, 0.0, 0.0)
 
     def _control(self) -> None:
+        now, before = self.part.clock.time_ns, self._updated_ns
         idles = self._controlling.idle is not None
         if idles and self.is_idle():
-            self._updated_ns = self.part.time_ns
+            self._updated_ns = now
             return
-        now, before = self.part.time_ns, self._updated_ns
         self._updated_ns = now
         if idles and before is not None:
             # It may have been idle since.
@@ -169,4 +174,4 @@ class Drive(Component):
         self.update(0.0 if before is None else (now - before) * 1e-9)
 
     def _publish(self) -> None:
-        self.publish(self.part.time_ns)
+        self.publish(self.part.clock.time_ns)

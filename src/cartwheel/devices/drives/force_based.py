@@ -13,7 +13,6 @@ from cartwheel.devices.drives.odometry import (
     Odometry,
     OdometryConfig,
     base_of,
-    planar_motion,
 )
 from cartwheel.geometry import Array, Pose
 
@@ -72,7 +71,7 @@ class ForceBasedDrive(Component):
         self._start = None
 
     def _publish(self) -> None:
-        position, orientation, linear, angular = planar_motion(self._base)
+        position, orientation, linear, angular = self._base.planar_motion()
         if self._start is None:
             self._start = Pose(position, orientation)
         if not self._odometry.wanted():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,10 +10,9 @@ import numpy as np
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.drives.odometry_frame import OdometryFrame
-from cartwheel.devices.drives.reckoning import Motion
 from cartwheel.devices.joints.transforms import JointTransforms
 from cartwheel.devices.transforms import TF_MESSAGE, transform_stamped
-from cartwheel.geometry import Array, Pose, Quat, Vec3, yaw_of
+from cartwheel.geometry import Array, Pose, Quat, Vec3
 from cartwheel.messages import Form, header, zero
 from cartwheel.simulation.handles import LinkHandle
 
@@ -147,9 +145,14 @@ class Odometry(Component):
         # The hottest path of all messages.
         tf, odometry = self._tf, self._odometry
         if tf is not None and tf.wanted:
-            base = () if self._child is None else (time_ns, *self._child.place(place, turn))
-            joints = () if self._joints is None else self._joints.values(time_ns)
-            tf.publish_values(self._tf_form, (*base, *joints))
+            child, joints = self._child, self._joints
+            values: list[Any] = []
+            if child is not None:
+                moved = (place, turn) if child.coincides else child.place(place, turn)
+                values = [time_ns, *moved]
+            if joints is not None:
+                joints.add(values, time_ns)
+            tf.publish_values(self._tf_form, tuple(values))
         if odometry is not None and odometry.wanted:
             odometry.publish_values(
                 self._form,
@@ -163,12 +166,3 @@ class Odometry(Component):
                     self.twist_covariance,
                 ),
             )
-
-
-def planar_motion(base: LinkHandle) -> Motion:
-    """Returns ground-truth pose in the world, planar velocity along the heading (m/s), yaw rate."""
-    place, turned = base.place()
-    vx, vy, turn_rate = base.planar_motion_at(place)
-    yaw = yaw_of(turned)
-    cos, sin = math.cos(yaw), math.sin(yaw)
-    return place, turned, (cos * vx + sin * vy, cos * vy - sin * vx, 0.0), (0.0, 0.0, turn_rate)

@@ -34,7 +34,9 @@ class OdometryFrame:
         self._sent: list[Any] = []
         self.name = owner.frame(base)
         """``child_frame_id`` of the transform."""
-        self._to_root: Pose | None = None
+        self.coincides = True
+        """Whether `place` returns the pose of the base link unchanged."""
+        self._to_root = Pose()
         self._turned = False
         if not chain:
             return
@@ -42,7 +44,7 @@ class OdometryFrame:
         poses = link_poses(description, {})
         to_root = poses[base].inverse() @ poses[chain[0].parent]
         # If both frames coincide, the pose is passed on bit for bit.
-        self._to_root = None if to_root == Pose() else to_root
+        self.coincides, self._to_root = to_root == Pose(), to_root
         self._turned = to_root.orientation != IDENTITY
         for joint in chain:
             between = poses[joint.parent].inverse() @ poses[joint.child]
@@ -57,7 +59,7 @@ class OdometryFrame:
 
         An unchanged orientation is returned as the same object.
         """
-        if self._to_root is None:
+        if self.coincides:
             return position, orientation
         # The product of two poses, without creating objects: this runs for each message.
         x, y, z = position

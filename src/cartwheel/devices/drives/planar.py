@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.drives.body_velocity import BodyVelocity, BodyVelocityConfig
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of, planar_motion
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, base_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,4 +50,4 @@ class PlanarDrive(Component):
             self.part.schedule(rate, after=self._publish, topics=self._odometry.publishers)
 
     def _publish(self) -> None:
-        self._odometry.publish(self.part.time_ns, *planar_motion(self._base))
+        self._odometry.publish(self.part.time_ns, *self._base.planar_motion())

@@ -10,7 +10,6 @@ from cartwheel.component import Scope
 from cartwheel.devices.drives.differential import DifferentialDrive
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.kinematics import axle_motion
-from cartwheel.devices.drives.odometry import planar_motion
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
 from cartwheel.devices.drives.tracked_vehicle import TrackedVehicle
 
@@ -67,4 +66,4 @@ class Relay(Drive):
             self._reckoning.go(distance, angle, seconds)
 
     def motion(self) -> Motion:
-        return planar_motion(self._base) if self._is_true else self._reckoning.motion()
+        return self._base.planar_motion() if self._is_true else self._reckoning.motion()

@@ -164,7 +164,7 @@ class Imu(TopicSensor):
         if self._yaw is not None and self._acceleration is not None:
             error = self._orientation_error(self._yaw, self._acceleration)
             orientation = quat_multiply(error, orientation)
-        time_ns = self.part.time_ns
+        time_ns = self.part.clock.time_ns
         if self._publisher.wanted:
             self._publisher.publish_values(self._form, (time_ns, orientation, rate, acceleration))
         if self._biases is not None and self._biases.wanted:

@@ -63,12 +63,12 @@ class InertialUnit:
         """
         orientation = IDENTITY
         if self.has_orientation:
-            orientation = self.orientation
+            orientation = self._link.turn() if self._aligned else self.orientation
             if self._world != IDENTITY:
                 orientation = quat_multiply(self._world, orientation)
         # Only the acceleration depends on the position on the link, which is rigid.
         rates = self.rates()
-        acceleration = self._rotated(self._link.proper_acceleration(self._mount.position).tolist())
+        acceleration = self._rotated(self._link.felt(self._mount.position))
         if self.acceleration_noise is not None:
             acceleration = self.acceleration_noise.add(acceleration)
         return orientation, rates, acceleration

@@ -46,7 +46,7 @@ class JointStates(Component):
         fields += ["velocity"] * config.velocities + ["effort"] * config.efforts
         self._form = Form(self._template, *fields)
         self._rate = config.rate
-        self._publisher = self.advertise(
+        self.publisher = self.advertise(
             config.topic, "sensor_msgs/msg/JointState", rate=config.rate or None
         )
 
@@ -65,16 +65,12 @@ class JointStates(Component):
             self._rate, after=lambda: self.publish(self.part.time_ns), topics=self.publishers
         )
 
-    def wanted(self) -> bool:
-        """Whether the topic has subscribers."""
-        return self._publisher.wanted
-
     def publish(self, time_ns: int) -> None:
         """Publishes the current state."""
         joints = self._joints
-        values: list[Any] = [time_ns, joints.positions()]
+        values: tuple[Any, ...] = (time_ns, joints.positions())
         if self._velocities:
-            values.append(joints.velocities())
+            values += (joints.velocities(),)
         if self._efforts:
-            values.append(joints.efforts())
-        self._publisher.publish_values(self._form, tuple(values))
+            values += (joints.efforts(),)
+        self.publisher.publish_values(self._form, values)

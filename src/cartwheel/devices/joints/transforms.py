@@ -52,11 +52,10 @@ class JointTransforms:
             yield f"{path}.transform.translation"
             yield f"{path}.transform.rotation"
 
-    def values(self, time_ns: int) -> list[Any]:
-        """The current values of `fields`."""
+    def add(self, values: list[Any], time_ns: int) -> None:
+        """Appends the current values of `fields`."""
         # robot_state_publisher publishes transforms of the same joints with the stamp of our joint
         # states. Ours is a nanosecond later, so that tf does not warn about repeated data.
-        values: list[Any] = [time_ns + 1]
+        values.append(time_ns + 1)
         for joint, _, _ in self._joints:
             values += joint.child_place()
-        return values
