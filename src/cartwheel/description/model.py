@@ -281,6 +281,20 @@ class Inertial:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Pinhole:
+    """Focal lengths and principal point of a pinhole camera, pixels, with SDF's defaults."""
+
+    fx: float = 277.0
+    fy: float = 277.0
+    cx: float = 160.0
+    cy: float = 120.0
+    """From the upper left corner of the image."""
+    tx: float = 0.0
+    ty: float = 0.0
+    """Last column of ``camera_info``'s P."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class CameraIntrinsics:
     """The parameters of one lens in SDF's ``<camera>``."""
 
@@ -302,6 +316,10 @@ class CameraIntrinsics:
     distortion_center: tuple[float, float] = (0.5, 0.5)
     noise_mean: float = 0.0
     noise_stddev: float = 0.0
+    pinhole: Pinhole | None = None
+    """``<lens><intrinsics>``, which gz-sim uses instead of the field of view."""
+    projection: Pinhole | None = None
+    """``<lens><projection>``, with which gz-sim renders the image."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

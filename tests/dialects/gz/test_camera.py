@@ -2,14 +2,28 @@
 
 import numpy as np
 import pytest
+from tests.coded import coded
 from tests.devices.cameras.depths import far_below
 from tests.devices.cameras.sensors import (
+    RED,
     cloud_of,
     depths_of,
+    focal,
+    pixels_of,
     rays,
+    reds,
     sensor,
     take,
     topic_names,
+)
+
+from cartwheel.codes import devices
+from cartwheel.geometry import Pose
+
+INTRINSICS = "<intrinsics><fx>200</fx><fy>300</fy><cx>100</cx><cy>150</cy></intrinsics>"
+PROJECTION = (
+    "<projection><p_fx>150</p_fx><p_fy>160</p_fy><p_cx>170</p_cx><p_cy>90</p_cy><tx>-3</tx>"
+    "</projection>"
 )
 
 
@@ -71,3 +85,48 @@ def test_new_gazebos_own_clip_of_depths(make):
     assert (depths[expected < 0.99] == -np.inf).all()
     assert (depths[expected > 3.03] == np.inf).all()
     assert np.isfinite(depths[(expected > 1.01) & (expected < 2.97)]).all()
+
+
+@pytest.mark.parametrize(
+    ("lens", "k", "p"),
+    [
+        (INTRINSICS, (200, 300, 100, 150), (200, 300, 100, 150, 0)),
+        (PROJECTION, (focal(320, 1.04),) * 2 + (160, 120), (150, 160, 170, 90, -3)),
+        (INTRINSICS + PROJECTION, (200, 300, 100, 150), (150, 160, 170, 90, -3)),
+    ],
+    ids=["intrinsics", "projection", "both"],
+)
+def test_the_focal_lengths_of_a_lens_replace_the_field_of_view(make, lens, k, p):
+    """The image is rendered with the projection, or with the intrinsics if there is none."""
+    more = "<topic>/cam/image</topic>"
+    post, half = (3.0, 0.4, 0.8), 0.3
+    world = make.world(
+        make.sdf(sensor(filename="", more=more, inside=f"<lens>{lens}</lens>")),
+        make.box("post", (0.002, 2 * half, 2 * half), static=True, colour=RED, pose=Pose(post)),
+    )
+    assert not coded(world, devices.SENSOR_SETTING_IGNORED)
+    info = take(world, "/cam/camera_info")
+    assert info.k.tolist() == pytest.approx([k[0], 0, k[2], 0, k[1], k[3], 0, 0, 1])
+    assert info.p.tolist() == pytest.approx([p[0], 0, p[2], p[4], 0, p[1], p[3], 0, 0, 0, 1, 0])
+    red = reds(pixels_of(take(world, "/cam/image")))
+    columns, rows = np.nonzero(red.any(axis=0))[0], np.nonzero(red.any(axis=1))[0]
+    for seen, length, centre, offset in (
+        (columns, p[0], p[2], -post[1]),
+        (rows, p[1], p[3], 1.0 - post[2]),
+    ):
+        edges = [centre + length * (offset + side * half) / post[0] for side in (-1, 1)]
+        assert [seen[0], seen[-1] + 1] == pytest.approx(edges, abs=1.5)
+
+
+@pytest.mark.parametrize("written", ["<fx>0</fx>", "<fy>-2</fy>", "<fy>1e-300</fy>"])
+def test_impossible_focal_lengths_are_reported(make, written):
+    inside = f"<lens><intrinsics>{written}</intrinsics></lens>"
+    world = make.world(make.sdf(sensor(filename="", more="<topic>/cam/i</topic>", inside=inside)))
+    assert coded(world, devices.SENSOR_SETTING_IGNORED, setting="intrinsics")
+    assert take(world, "/cam/camera_info").k[0] == pytest.approx(focal(320, 1.04))
+
+
+def test_a_lens_that_states_no_focal_lengths_is_reported(make):
+    inside = "<lens><type>stereographic</type></lens>"
+    world = make.world(make.sdf(sensor(filename="", more="<topic>/cam/i</topic>", inside=inside)))
+    assert coded(world, devices.SENSOR_SETTING_IGNORED, setting="lens")

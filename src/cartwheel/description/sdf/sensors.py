@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from cartwheel.codes.tags import SENSOR_TWICE, TYPE_UNKNOWN
 from cartwheel.description.elements.numbers import LARGEST, within
 from cartwheel.description.elements.xml import Node, copied, to_element
 from cartwheel.description.losses import loss
-from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
+from cartwheel.description.model import CameraIntrinsics, Pinhole, PluginTag, Sensor
 from cartwheel.description.sdf.context import read_pose
 from cartwheel.description.sdf.sensor_tags import mark_known
 from cartwheel.errors import DescriptionError, Diagnostic
@@ -157,12 +158,27 @@ def read_camera(node: Node) -> CameraIntrinsics:
         distortion_center=(cx, cy),
         noise_mean=mean,
         noise_stddev=stddev,
+        pinhole=_pinhole(node.find("lens/intrinsics"), ("fx", "fy", "cx", "cy")),
+        projection=_pinhole(
+            node.find("lens/projection"), ("p_fx", "p_fy", "p_cx", "p_cy", "tx", "ty")
+        ),
     )
 
 
-def _bounded(node: Node, path: str, most: float) -> float:
+def _pinhole(node: Node | None, names: Sequence[str]) -> Pinhole | None:
+    """The focal lengths and the principal point of a lens; None if it states none."""
+    if node is None:
+        return None
+    values = {
+        name.removeprefix("p_"): _bounded(node, name, MOST_PIXELS, default)
+        for name, default in zip(names, dataclasses.astuple(Pinhole()), strict=False)
+    }
+    return Pinhole(**values)
+
+
+def _bounded(node: Node, path: str, most: float, default: float = 0.0) -> float:
     origin = (node.find(path) or node).origin
-    return within(node.number_at(path, 0.0), most, f"<{path.rsplit('/', 1)[-1]}>", origin)
+    return within(node.number_at(path, default), most, f"<{path.rsplit('/', 1)[-1]}>", origin)
 
 
 def _noise(node: Node | None) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.component import Component
-from cartwheel.description.model import CameraIntrinsics
+from cartwheel.description.model import CameraIntrinsics, Pinhole
 from cartwheel.devices.cameras.compressed import (
     COMPRESSED,
     DEPTH_PARAMETERS,
@@ -51,6 +51,8 @@ class ImagerConfig:
     """Topic of the images; empty if only depths are published."""
     info_topic: str
     """Topic of the CameraInfo."""
+    pinhole: Pinhole | None = None
+    """Focal lengths and principal point of the image; None: those of the field of view."""
     namespace: str = ""
     """Namespace of the services; empty if no service needs one."""
     set_info: bool = True
@@ -86,7 +88,7 @@ class Imager:
     ) -> None:
         intrinsics = config.intrinsics
         self._owner = owner
-        self.lens = Lens(intrinsics, config.distortion)
+        self.lens = Lens(intrinsics, config.distortion, config.pinhole)
         self.frame = owner.frame(config.frame)
         self.calibration = Calibration(self.lens, self.frame, config.calibration)
         self._noise = (intrinsics.noise_mean, intrinsics.noise_stddev)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.description.model import Pinhole
 from cartwheel.devices.cameras.lens import Lens
 from cartwheel.geometry import Array
 from cartwheel.messages import header, message_class, service_classes
@@ -44,6 +45,8 @@ class CalibrationConfig:
     """Pixels; 0: computed from the field of view."""
     centre: tuple[float, float] = (0.0, 0.0)
     """Principal point, pixels; 0: (size + 1) / 2."""
+    pinhole: Pinhole | None = None
+    """Focal lengths and principal point that replace these."""
     baseline: float = 0.0
     """Distance to the right of the left camera of a stereo pair, m."""
     rectified: Rectified = UNCHANGED
@@ -61,9 +64,12 @@ class Calibration:
     def __init__(self, lens: Lens, frame: str, config: CalibrationConfig) -> None:
         self._frame = frame
         self.width, self.height = lens.intrinsics.width, lens.intrinsics.height
-        focal = config.focal_length or lens.focal
+        focal = fy = config.focal_length or lens.focal
         cx = config.centre[0] or (self.width + 1) / 2
         cy = config.centre[1] or (self.height + 1) / 2
+        if config.pinhole is not None:
+            focal, fy = config.pinhole.fx, config.pinhole.fy
+            cx, cy = config.pinhole.cx, config.pinhole.cy
         rectified = config.rectified
         self.info = message_class(INFO)(
             header=header(0, frame),
@@ -71,7 +77,7 @@ class Calibration:
             width=self.width,
             distortion_model="plumb_bob",
             d=np.array(lens.distortion.coefficients, dtype=float),
-            k=np.array([focal, 0, cx, 0, focal, cy, 0, 0, 1]),
+            k=np.array([focal, 0, cx, 0, fy, cy, 0, 0, 1]),
             r=np.eye(3).ravel() if rectified.rotation is None else np.array(rectified.rotation),
             p=projection(rectified, focal, cx, cy, config.baseline),
         )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.model import CameraIntrinsics
+from cartwheel.description.model import CameraIntrinsics, Pinhole
 
 Floats = NDArray[np.float64]
 
@@ -99,11 +99,17 @@ class Lens:
     """Maps the rendered pinhole image to the image of a lens with distortion.
 
     Args:
-        intrinsics: The final image; its own distortion is ignored.
+        intrinsics: The final image; its own distortion and pinhole are ignored.
         distortion: Distortion of the lens.
+        pinhole: Focal lengths and principal point; None for those of the field of view.
     """
 
-    def __init__(self, intrinsics: CameraIntrinsics, distortion: Distortion) -> None:
+    def __init__(
+        self,
+        intrinsics: CameraIntrinsics,
+        distortion: Distortion,
+        pinhole: Pinhole | None = None,
+    ) -> None:
         self.intrinsics = intrinsics
         self.distortion = distortion
         width, height = intrinsics.width, intrinsics.height
@@ -111,23 +117,22 @@ class Lens:
         """Focal length, pixels."""
         self.rendered = intrinsics
         """The pinhole image to render, larger than the final image for barrel distortion."""
-        x = (np.arange(width) + 0.5 - width / 2) / self.focal
-        y = (np.arange(height) + 0.5 - height / 2) / self.focal
-        self._x, self._y = (
-            np.broadcast_to(x, (height, width)),
-            np.broadcast_to(y[:, None], (height, width)),
-        )
+        centred = Pinhole(fx=self.focal, fy=self.focal, cx=width / 2, cy=height / 2)
+        self._pinhole = pinhole or centred
+        self._x, self._y = _directions(centred, width, height)
         self._map: _Map | None = None
-        if any(distortion.coefficients):
+        if any(distortion.coefficients) or pinhole is not None:
             self._distort()
 
     def _distort(self) -> None:
-        image = self.intrinsics
-        # The distortion is centred at the point in the description.
-        cx = (image.distortion_center[0] - 0.5) * image.width / self.focal
-        cy = (image.distortion_center[1] - 0.5) * image.height / self.focal
-        x, y = self.distortion.invert(self._x - cx, self._y - cy)
-        x, y = x + cx, y + cy
+        image, pinhole = self.intrinsics, self._pinhole
+        x, y = _directions(pinhole, image.width, image.height)
+        if any(self.distortion.coefficients):
+            # The distortion is centred at the point in the description.
+            cx = (image.distortion_center[0] * image.width - pinhole.cx) / pinhole.fx
+            cy = (image.distortion_center[1] * image.height - pinhole.cy) / pinhole.fy
+            x, y = self.distortion.invert(x - cx, y - cy)
+            x, y = x + cx, y + cy
         moved = np.hypot(x - self._x, y - self._y) * self.focal
         if not (np.isnan(moved).any() or moved.max() > _INVISIBLE):
             return
@@ -156,6 +161,13 @@ class Lens:
         Depths are not interpolated: between an object and its background there is no surface.
         """
         return picture if self._map is None else self._map.pick(picture)
+
+
+def _directions(pinhole: Pinhole, width: int, height: int) -> tuple[Floats, Floats]:
+    """Returns the direction of each pixel's centre, at depth 1, shape (height, width)."""
+    x = (np.arange(width) + 0.5 - pinhole.cx) / pinhole.fx
+    y = (np.arange(height) + 0.5 - pinhole.cy) / pinhole.fy
+    return np.broadcast_to(x, (height, width)), np.broadcast_to(y[:, None], (height, width))
 
 
 def _reach(values: Floats) -> float:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.description.model import Sensor
+from cartwheel.codes import devices
+from cartwheel.description.model import CameraIntrinsics, Pinhole, Sensor
+from cartwheel.description.sdf.sensors import NARROWEST
 from cartwheel.devices.cameras.camera import Camera, CameraConfig
 from cartwheel.devices.cameras.depth_camera import DepthConfig
 from cartwheel.devices.cameras.imager import ImagerConfig
-from cartwheel.devices.cameras.info import CalibrationConfig
+from cartwheel.devices.cameras.info import CalibrationConfig, Rectified
 from cartwheel.dialects.gz.bridge_file import gz_spelling
 from cartwheel.dialects.gz.sensor_tags import GzSensor
 from cartwheel.dialects.sdf.camera import read_camera, read_lens
@@ -18,6 +21,8 @@ from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag
 
 _DEPTHS = ("depth_camera", "depth")
+_SHORTEST = 1e-3
+"""Minimum focal length, pixels; with a shorter one, an image shows a single point."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -75,6 +80,9 @@ class GzCamera(GzSensor[GzCameraParameters]):
     publishes images on ``<topic>/image``, depth images on ``<topic>/depth_image`` and point clouds
     on ``<topic>/points``.
 
+    The focal lengths and the principal point in ``<lens><projection>``, or else in
+    ``<lens><intrinsics>``, replace ``<horizontal_fov>``. The skew is ignored.
+
     Depths are measured along the optical axis, and are inf for pixels without a surface. In the
     frame of the points, x points forward, y left and z up, as in gz-sim.
 
@@ -87,7 +95,7 @@ class GzCamera(GzSensor[GzCameraParameters]):
     serves: ClassVar[tuple[str, ...]] = ("camera", "rgbd_camera", *_DEPTHS)
 
     def configure(self) -> None:
-        config, sensor = self.config, read_camera(self, self.sensor)
+        config, sensor = self.config, read_camera(self, self.sensor, pinhole=True)
         last = {"camera": "image", "rgbd_camera": ""}.get(sensor.type, "depth_image")
         topic = self.topic(last)
         trigger = gz_spelling(config.trigger_topic) or f"{topic}/trigger"
@@ -104,12 +112,20 @@ class GzCamera(GzSensor[GzCameraParameters]):
 
     def _imager(self, sensor: Sensor, topic: str) -> ImagerConfig:
         around = topic if sensor.type == "rgbd_camera" else topic.rpartition("/")[0]
-        lens, distortion, image_format = read_lens(self, sensor.cameras[0])
+        camera = sensor.cameras[0]
+        stated = self._usable(camera.pinhole, camera.width, "intrinsics")
+        rendered = self._usable(camera.projection, camera.width, "projection") or stated
+        calibration = _calibration(camera, stated, rendered)
+        if rendered is not None:
+            view = _view(rendered, camera.width)
+            camera = dataclasses.replace(camera, horizontal_fov=view)
+        lens, distortion, image_format = read_lens(self, camera)
         return ImagerConfig(
             intrinsics=lens,
+            pinhole=rendered,
             distortion=distortion,
             format=image_format,
-            calibration=CalibrationConfig(centre=(lens.width / 2, lens.height / 2)),
+            calibration=calibration,
             frame=self.frame_id,
             image_topic={"camera": topic, "rgbd_camera": f"{topic}/image"}.get(sensor.type, ""),
             info_topic=gz_spelling(self.config.info_topic)
@@ -117,6 +133,21 @@ class GzCamera(GzSensor[GzCameraParameters]):
             set_info=False,
             adjustable=False,
         )
+
+    def _usable(self, pinhole: Pinhole | None, width: int, setting: str) -> Pinhole | None:
+        """A pinhole, if its focal lengths are possible. Otherwise, it is reported."""
+        if pinhole is None:
+            return None
+        shortest = min(pinhole.fx, pinhole.fy)
+        if shortest >= _SHORTEST and _view(pinhole, width) >= NARROWEST:
+            return pinhole
+        self.warn(
+            devices.SENSOR_SETTING_IGNORED,
+            f"<{setting}> has no effect: the focal lengths {pinhole.fx:g} and {pinhole.fy:g} are "
+            "not possible",
+            values={"setting": setting},
+        )
+        return None
 
     def _depth(self, sensor: Sensor, topic: str) -> DepthConfig | None:
         if sensor.type == "camera":
@@ -129,3 +160,32 @@ class GzCamera(GzSensor[GzCameraParameters]):
             beyond="inf",
             optical=False,
         )
+
+
+def _view(pinhole: Pinhole, width: int) -> float:
+    """The horizontal field of view of an image whose principal point is its middle, rad."""
+    return 2 * math.atan(width / (2 * pinhole.fx))
+
+
+def _calibration(
+    camera: CameraIntrinsics, stated: Pinhole | None, rendered: Pinhole | None
+) -> CalibrationConfig:
+    """What the CameraInfo states: the intrinsics in K, and what is rendered in P.
+
+    Source: `CameraSensor::UpdateLensIntrinsicsAndProjection`.
+    """
+    centre = (camera.width / 2, camera.height / 2)
+    if rendered is None:
+        return CalibrationConfig(centre=centre)
+    focal = camera.width / (2 * math.tan(camera.horizontal_fov / 2))
+    return CalibrationConfig(
+        pinhole=stated or Pinhole(fx=focal, fy=focal, cx=centre[0], cy=centre[1]),
+        rectified=Rectified(
+            fx=rendered.fx,
+            fy=rendered.fy,
+            cx=rendered.cx,
+            cy=rendered.cy,
+            tx=rendered.tx,
+            ty=rendered.ty,
+        ),
+    )

@@ -27,6 +27,8 @@ _UNSUPPORTED = {
 }
 """Unsupported elements of SDF cameras, and what applies instead."""
 _WIDE = ("wideanglecamera", "wide_angle_camera")
+_PINHOLE = ("intrinsics", "projection")
+"""Elements of ``<lens>`` that state a pinhole."""
 NO_DISTORTION = Distortion()
 
 _FORMATS = {
@@ -49,12 +51,13 @@ _FORMATS = {
 """By upper-case SDF format. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils."""
 
 
-def read_camera(plugin: Component, sensor: Sensor) -> Sensor:
+def read_camera(plugin: Component, sensor: Sensor, *, pinhole: bool = False) -> Sensor:
     """Returns a camera sensor with at least one lens, and reports unsupported elements.
 
     Args:
         plugin: Reports the diagnostics.
         sensor: The sensor.
+        pinhole: Whether the focal lengths in ``<lens>`` are used.
     """
     if not sensor.cameras:
         sensor = dataclasses.replace(sensor, cameras=(CameraIntrinsics(),))
@@ -73,6 +76,8 @@ def read_camera(plugin: Component, sensor: Sensor) -> Sensor:
         )
     for camera in sensor.element.find_all("camera"):
         for child in camera.children:
+            if pinhole and child.tag == "lens" and any(map(child.find, _PINHOLE)):
+                continue
             if child.tag in _UNSUPPORTED and child.attribute("enabled") not in ("false", "0"):
                 plugin.warn(
                     devices.SENSOR_SETTING_IGNORED,
