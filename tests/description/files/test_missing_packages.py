@@ -214,3 +214,18 @@ def test_a_yaml_file_of_the_own_package_under_its_former_name(load, tmp_path):
     assert [values["name"] for _, values in reported(robot, FILE_ELSEWHERE)] == [
         "$(find former)/size.yaml"
     ]
+
+
+@pytest.mark.parametrize("scheme", ["", "file://"])
+def test_a_mesh_of_the_own_package_under_its_former_name(load, tmp_path, scheme):
+    """xacro stops at a package that does not exist, also within a URI."""
+    meshes = tmp_path / "src" / "mine" / "meshes"
+    meshes.mkdir()
+    corners = ("0 0 0", "0.2 0 0", "0 0.2 0", "0 0 0.2")
+    points = "\n".join(f"v {each}" for each in corners)
+    (meshes / "hull.obj").write_text(f"{points}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    name = f"{scheme}$(find former)/meshes/hull.obj"
+    robot = load(BASE.replace('<box size="0.2 0.2 0.2"/>', f'<mesh filename="{name}"/>'))
+    assert len(robot.links[0].collisions) == 1
+    ((_, values),) = reported(robot, FILE_ELSEWHERE)
+    assert values["name"] == name

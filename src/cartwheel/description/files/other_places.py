@@ -22,15 +22,16 @@ def other_places(
     In ``/home/me/ws/src/my_robot/meshes/base.stl``, ``my_robot`` may be a package that is found on
     this computer. A relative path may start in a folder above the description's, from which the
     author runs xacro. In ``package://my_robot/meshes/base.stl`` and
-    ``$(find my_robot)/meshes/base.stl``, ``my_robot`` may be a former name of the description's own
-    package.
+    ``$(find my_robot)/meshes/base.stl``, with or without ``file://``, ``my_robot`` may be a former
+    name of the description's own package.
 
     Args:
         uri: The statement in the description.
         folders: The description's folder and those above it in its workspace.
         package: Returns the folder of a package.
     """
-    uri = FIND.sub(r"package://\1", uri, count=1) if uri.startswith("$(") else uri
+    bare = uri.removeprefix("file://")
+    uri = FIND.sub(r"package://\1", bare, count=1) if bare.startswith("$(") else uri
     scheme, separator, rest = uri.partition("://")
     if ".." in Path(uri).parts:
         return

@@ -225,10 +225,12 @@ class Packages:
     def moves(self) -> Iterator[Diagnostic]:
         """Reports the files that are not where the description says."""
         for uri, (path, origin) in self.found_elsewhere.items():
+            lacking = FIND.search(uri)
+            stops = f'Without the package "{lacking[1]}", ROS stops here. ' if lacking else ""
             yield codes.FILE_ELSEWHERE.diagnostic(
                 f'"{uri}" does not exist, so "{path}" is used',
                 origin=origin,
-                hint=how_to_refer_to(path),
+                hint=f"{stops}{how_to_refer_to(path)}",
                 values={"name": uri, "used": str(path)},
             )
 
