@@ -9,7 +9,14 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.sliding import Dragged, dragged_turn, is_held, rolls_only_forward
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import ROUND, lowest, wheel_joints, wheel_links, wheel_widths
+from cartwheel.checks.wheels import (
+    ROUND,
+    lowest,
+    wheel_axis,
+    wheel_joints,
+    wheel_links,
+    wheel_widths,
+)
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
 from cartwheel.description.model import Collision, Joint, Link, Sphere
@@ -27,6 +34,8 @@ _PLANAR = (PlanarMove, PlanarForceMove, ForceBasedMove)
 """Plugins that move a robot over the ground without wheels."""
 _IN_SDF = "Set <mu> and <mu2> in <surface><friction><ode> of this collision to 0."
 _STUCK = ", which is more than the motors can overcome"
+_UPRIGHT = 0.95
+"""Minimum vertical component of the axis of a part that turns about the vertical."""
 _LOW = 0.3
 """Friction coefficient of a caster that hardly brakes a robot."""
 
@@ -65,11 +74,14 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
             if "caster" not in link.name.lower() or holder is None:
                 continue
             rolls = rolls_only_forward(robot, holder, driven)
-            if holder.type != "fixed" and not rolls:
+            pivots = holder.turns and abs(wheel_axis(robot, holder)[2]) > _UPRIGHT
+            if holder.type != "fixed" and not rolls and not pivots:
                 continue
             if not _touches_ground(robot, link, wheels):
                 continue
             lacks = "swivel, so it slides when the robot turns" if rolls else "roll"
+            if pivots:
+                lacks += ", because it turns only about the vertical"
             yield from _braking(
                 subject,
                 link,
