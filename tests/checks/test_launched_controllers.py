@@ -26,7 +26,10 @@ def spawned(folder, *, named, launch=LAUNCH):
     text = controlled(package / "settings", separation=0.4)
     tag = text[text.index("<parameters>") : text.index("</parameters>") + len("</parameters>")]
     path = package / "robot.urdf"
-    control = text if named else text.replace(tag, "")
+    # Of these plugins, only that of Gazebo Classic starts without the file.
+    classic = text.replace(tag, "").replace("gz_ros2_control-system", "libgazebo_ros2_control.so")
+    classic = classic.replace("gz_ros2_control/GazeboSimSystem", "gazebo_ros2_control/GazeboSystem")
+    control = text if named else classic
     path.write_text(f'<robot name="cart">{cart()}{control}</robot>')
     (package / "cart.launch.xml").write_text(launch)
     return path

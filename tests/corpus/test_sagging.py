@@ -46,7 +46,8 @@ def tried(tmp_path, text, controllers=""):
     path, files = tmp_path / "dog.urdf", tmp_path / "hold.yaml"
     path.write_text(text)
     files.write_text(controllers)
-    return try_robot(path, standing=4.0, controllers=(files,) if controllers else ())
+    given = (files,) if controllers and files.name not in text else ()
+    return try_robot(path, standing=4.0, controllers=given)
 
 
 def ros1(kind, *, p, d):
@@ -105,7 +106,7 @@ def started(angle, *, effort=200.0):
             f'<param name="initial_value">{value}</param></state_interface>',
         )
         joints.append(joint)
-    return quadruped(ros2_system(*joints) + f"<gazebo>{ros2_plugin()}</gazebo>", effort=effort)
+    return quadruped(ros2_system(*joints) + f"<gazebo>{ros2_plugin('hold.yaml')}</gazebo>", effort=effort)
 
 
 def test_a_robot_that_ros2_control_bends_at_the_start_stands(tmp_path):

@@ -960,9 +960,9 @@ def test_a_controller_of_wheels_without_friction_is_no_fault_if_the_robot_is_pus
         BOX.format(name="base", at="0 0 0", size="0.3 0.15 0.03") + wheels,
         '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
         f"</plugin></hardware>{interfaces}</ros2_control><gazebo>"
-        '<plugin name="c" filename="gz_ros2_control-system"/>'
+        '<plugin name="c" filename="gz_ros2_control-system">'
+        f"<parameters>{path}</parameters></plugin>"
         '<plugin name="p" filename="libgazebo_ros_planar_move.so"/></gazebo>',
-        controllers=[path],
     )
     errors = {drive.topic: drive.error for drive in verdict.drives}
     assert len(errors) == 2

@@ -136,7 +136,7 @@ def _faults(
     held = bool([*held_bases(verdict, description, findings)])
     missing = {
         fault.subject: fault
-        for fault in reversed([*missing_movers(verdict, description, held=held)])
+        for fault in reversed([*missing_movers(verdict, description, findings, held=held)])
         if stopped is None or fault.reason is not stopped
     }
     unmanaged = dict(unmanaged_hardware(verdict, description, findings))

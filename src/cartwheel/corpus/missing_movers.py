@@ -22,6 +22,7 @@ from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
+from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_only import other_ros, other_tags
 from cartwheel.dialects.world_plugins import refused
 from cartwheel.errors import Diagnostic
@@ -124,11 +125,19 @@ def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterato
 
 
 def missing_movers(
-    verdict: Verdict, description: RobotDescription, *, held: bool
+    verdict: Verdict,
+    description: RobotDescription,
+    findings: Callable[[], Sequence[Diagnostic]],
+    *,
+    held: bool,
 ) -> Iterator[Fault]:
     """Plugins that should move the robot and are missing, and controllers that did not start.
 
-    `held` is whether something that drives a base was not tested, because the base is fixed.
+    Args:
+        verdict: The measurements.
+        description: The robot.
+        findings: Returns the findings of `cartwheel check`.
+        held: Whether something that drives a base was not tested, because the base is fixed.
     """
     said = verdict.diagnostics
     all_moves = verdict.passes and _is_all_driven(verdict, description)
@@ -156,9 +165,10 @@ def missing_movers(
     for name, reason in ignored_movers(description):
         yield Fault(test="plugin", subject=name, reason=reason)
     # Cartwheel runs the plugins of both versions, so the tests do not show that one is missing.
-    loads = [(tag, other_ros(description, tag)) for tag in managers(description)]
-    if all(reason is not None for _, reason in loads):
-        for tag, reason in loads:
+    # Nor does it need the tags without which Gazebo's plugin does not start.
+    idle = [(tag, _not_started(description, tag, findings)) for tag in managers(description)]
+    if all(reason is not None for _, reason in idle):
+        for tag, reason in idle:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
     unstarted = {
         each.values.get("controller"): each
@@ -213,8 +223,8 @@ def missing_movers(
     for each in undefined:
         yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
     for tag in managers(description, jointless=bool(replaced)):
-        # Of the other version, Gazebo does not load the manager, whatever else is wrong.
-        reason = other_ros(description, tag) or most_severe(stopped)
+        # Without its manager, it does not matter what else is wrong.
+        reason = _not_started(description, tag, findings) or most_severe(stopped)
         reason = reason or most_severe(
             each for each in said if each.code in codes and _concerns(each, tag)
         )
@@ -222,6 +232,25 @@ def missing_movers(
             reason = _uncommanded(verdict, tag)
         if reason is not None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _not_started(
+    description: RobotDescription, tag: PluginTag, findings: Callable[[], Sequence[Diagnostic]]
+) -> Diagnostic | None:
+    """Why Gazebo does not start a controller manager; None if it does."""
+    reason = other_ros(description, tag)
+    if reason is not None or without_parameters(tag) is None:
+        return reason
+    return next(
+        (
+            each
+            for each in findings()
+            if each.code is devices.CONTROLLERS_NOT_FOUND
+            and each.values.get("plugin") == tag.filename
+            and each.severity != "info"
+        ),
+        None,
+    )
 
 
 def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:

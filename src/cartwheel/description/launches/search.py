@@ -221,11 +221,27 @@ def controllers_for(
     return next(iter(starters(description, uses)), None)
 
 
-def starters(description: Path, uses: Sequence[LaunchUse]) -> list[LaunchUse]:
-    """The launch files without a description that start controllers, nearest first."""
-    others = [each for each in uses if each.description is None and each.spawned]
+def starters(
+    description: Path, uses: Sequence[LaunchUse], *, described: bool = False
+) -> list[LaunchUse]:
+    """The launch files without a description that start controllers, nearest first.
+
+    Args:
+        description: The description.
+        uses: Contents of launch files.
+        described: Whether those with this description follow, which load it once more.
+    """
+    kinds: tuple[Path | None, ...] = (None, description.resolve()) if described else (None,)
+    others = [
+        (kinds.index(own), each)
+        for each in uses
+        if (own := each.description and each.description.resolve()) in kinds
+        and each.spawned
+        and each.controllers
+    ]
     home = description.absolute()
-    return sorted(others, key=lambda each: (-shared_parts(each.file, home), str(each.file)))
+    others.sort(key=lambda one: (one[0], -shared_parts(one[1].file, home), str(one[1].file)))
+    return [each for _, each in others]
 
 
 def _order(use: LaunchUse) -> tuple[bool, int, bool, int, int, str]:

@@ -37,6 +37,7 @@ _LOOK = 100
 """Steps of a look at a file or folder."""
 DEEPEST = 6
 """Maximum nesting of included launch files."""
+_YAMLS = (".yaml", ".yml")
 _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
@@ -44,6 +45,11 @@ _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _FIRST_KEY = re.compile(r"^( *)(?!---|[\s#%])", re.MULTILINE)
 """The indentation of a YAML file's first key, which is that of all keys of the same mapping."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
+
+
+def _is_telling(file: Path) -> bool:
+    """Whether enough of a file's name is known that others with such a name may be meant."""
+    return re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")) is not None
 
 
 def _is_single(file: Path) -> bool:
@@ -203,7 +209,7 @@ class Facts:
             file = self.here(file)
             if is_file(file):
                 self.descriptions.append((file, dict(arguments)))
-        elif re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")):
+        elif _is_telling(file):
             known = {**arguments, "": UNKNOWN}
             self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
         if len(self.descriptions) > number:
@@ -344,6 +350,8 @@ class Facts:
     ) -> None:
         """Adds a YAML file if it exists.
 
+        If a part of its name is unknown, it is the only file with such a name.
+
         Args:
             text: Its name.
             namespace: Namespace into which ROS 1 loads it. It is the name of the controller if the
@@ -353,14 +361,19 @@ class Facts:
         """
         self.effort.spend(_LOOK)
         path = Path(text.strip())
-        if UNKNOWN not in text and path.suffix in (".yaml", ".yml") and is_file(path):
+        if UNKNOWN in path.name and UNKNOWN not in str(path.parent) and _is_telling(path):
+            found = list(beside(path, UNKNOWN, _YAMLS))
+            if len(found) == 1:
+                (path,) = found
+                text = str(path)
+        if UNKNOWN not in text and path.suffix in _YAMLS and is_file(path):
             space = resolved(self.namespace if within is None else within, namespace.strip())
             name = namespace.strip("/ ").rpartition("/")[2]
             if re.fullmatch(r"\w+", name) and _is_single(path):
                 path, space = Path(f"{name}={path}"), space.rpartition("/")[0]
             self.yamls.append((space, path))
             self.places.append((space if certain else UNKNOWN, path))
-        elif UNKNOWN not in text and path.suffix in (".yaml", ".yml") and path not in self.lost:
+        elif UNKNOWN not in text and path.suffix in _YAMLS and path not in self.lost:
             self.lost.append(path)
 
     def written(self, path: Path, namespace: str) -> None:

@@ -12,8 +12,13 @@ SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
 """Ends of the names of descriptions."""
 
 
-def beside(file: Path, word: str) -> dict[Path, str]:
+def beside(file: Path, word: str, suffixes: tuple[str, ...] = SUFFIXES) -> dict[Path, str]:
     """The descriptions in a file's folder whose names differ from its name only in a word.
+
+    Args:
+        file: The file.
+        word: The word.
+        suffixes: Ends of the names, for other files than descriptions.
 
     Returns:
         What stands for the word, by file.
@@ -29,7 +34,7 @@ def beside(file: Path, word: str) -> dict[Path, str]:
     return {
         file.parent / name: found["word"]
         for name in names
-        if name.endswith(SUFFIXES)
+        if name.endswith(suffixes)
         and (found := pattern.fullmatch(name)) is not None
         and is_file(file.parent / name)
     }

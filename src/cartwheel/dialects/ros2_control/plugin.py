@@ -17,6 +17,7 @@ from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros2_control.components import HardwareComponents
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
+from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerFiles,
@@ -104,7 +105,8 @@ class Ros2Control(ControlPlugin):
         self.namespace = self.namespace.strip("/")
         files = self.shared.get(ControllerFiles)
         own = files.take()
-        named = [self._path(text) for text in config.files]
+        stated = config.files if without_parameters(self.tag) is None else ()
+        named = [self._path(text) for text in stated]
         paths = [*(path for path in named if path is not None), *own]
         contents = [files.read_ros2(path, part.description) for path in paths]
         merged = ros2_file(contents, self.namespace, config.manager)

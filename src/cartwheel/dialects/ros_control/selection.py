@@ -27,7 +27,7 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.files import for_robot, read_parameters
-from cartwheel.dialects.ros_control.launched.names import as_named, named_in
+from cartwheel.dialects.ros_control.launched.names import as_named, last_names, named_in
 from cartwheel.dialects.ros_control.launched.problems import (
     misplaced,
     misplaced_names,
@@ -49,6 +49,8 @@ _SUFFIXES = frozenset({".sdf", ".world"})
 """Ends of the names of SDF files, which another one may follow, as in ``arena.world.xacro``."""
 _MOST = 8
 """Maximum number of launch files that are considered."""
+_MOST_LENT = 100
+"""Maximum number of other launch files' controller files that are read."""
 _FOLDERS = (".", "urdf", "../urdf")
 """Folders beside an SDF model in which its URDF may be."""
 _ENDS = (".urdf", ".xacro", ".urdf.xacro")
@@ -87,14 +89,12 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     launches = () if folder is None else launches_near(folder, package_path)
     use = chosen(file, launches)
     starter = _starter(file, use, launches)
-    loaded = () if starter is None else starter.controllers
-    if not suggested(robot) and not suggested(robot, among=loaded):
+    # The user need not start this launch file, and here, the controllers work.
+    found = selection(robot, use, launches, tolerant=True) if lacks_controllers(robot) else None
+    if found is None or not found.files:
         problems = (*unfound(starter), *undefined(robot, starter), *only_loaded(starter))
         idle = () if starter is None else as_named(starter.loaded, ())
         found = Selection(files=(), names=(), idle=idle, problems=problems)
-    else:
-        # The user need not start this launch file, and here, the controllers work.
-        found = selection(robot, use, launches, tolerant=True)
     return replace(found, problems=(*found.problems, *unread(launches)))
 
 
@@ -141,9 +141,14 @@ def selection(
     if starter is not use and not commanding(robot, named):
         # The launch file of another part only publishes the states of all joints.
         starter, named = None, []
+    spawner = starter or use
+    if spawner is not None and is_of_ros1(robot):
+        lent = _lent(robot, spawner, launches, named)
+        if commanding(robot, lent):
+            starter, named = spawner, [*named, *lent]
     near = [] if named else suggested(robot, within=within)
     if starter is None and (use is None or not use.spawned) and not near:
-        for each in starters(Path(robot.origin.file), launches)[:_MOST]:
+        for each in starters(Path(robot.origin.file), launches, described=True)[:_MOST]:
             found = suggested(robot, among=each.controllers)
             if commanding(robot, found):
                 starter, named = each, found
@@ -168,6 +173,39 @@ def selection(
     problems = (*lost, *missing, *reported, *apart, *only_loaded(starting))
     launch = None if starting is None else starting.file
     return Selection(files=files, names=names, idle=idle, problems=problems, launch=launch)
+
+
+def _lent(
+    robot: RobotDescription,
+    spawner: LaunchUse,
+    launches: Sequence[LaunchUse],
+    own: Sequence[Path],
+) -> list[Path]:
+    """The files with controllers that a launch file starts and whose parameters others load.
+
+    In ROS 1, all launch files set parameters of the same server.
+
+    Args:
+        robot: The robot.
+        spawner: The launch file.
+        launches: All launch files near the robot. Those that load another description are for
+            another robot.
+        own: The files that it loads itself.
+    """
+    missing = {name.rpartition("/")[2] for name in spawner.spawned}
+    missing -= frozenset[str]().union(*(last_names(path, robot) for path in own))
+    if not missing:
+        return []
+    file = Path(robot.origin.file).resolve()
+    others = dict.fromkeys(
+        path
+        for each in launches
+        if each.description is None or each.description.resolve() == file
+        for path in each.controllers
+        if path not in own
+    )
+    fitting = suggested(robot, among=[*itertools.islice(others, _MOST_LENT)])
+    return [path for path in fitting if missing & last_names(path, robot)]
 
 
 def _is_complete(path: Path, robot: RobotDescription) -> bool:

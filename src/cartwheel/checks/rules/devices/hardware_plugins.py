@@ -22,7 +22,7 @@ from cartwheel.dialects.ros_control.interfaces import (
 )
 from cartwheel.errors import Diagnostic, Origin
 
-_CONDITIONS = ("xacro:if", "xacro:unless")
+CONDITIONS = ("xacro:if", "xacro:unless")
 """Elements of a xacro whose contents depend on its arguments."""
 
 
@@ -58,7 +58,7 @@ def _unloaded(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
     for system, manager in systems:
         hardware, name = hardware_of(system), system.attribute("name") or ""
         element = system.find("hardware/plugin") or system
-        chosen = choices.concern(element.origin) and not _is_started(subject)
+        chosen = choices.concern(element.origin) and not is_started(subject)
         own = package_system(hardware)
         meant = own if own in loaded_by(robot.description) else ""
         why = f'"{manager.filename}" does not load it'
@@ -91,7 +91,7 @@ def _systems(robot: Robot) -> str:
     return " or ".join(f"<plugin>{name}</plugin>" for name in SYSTEMS if name in loaded)
 
 
-def _is_started(subject: Subject) -> bool:
+def is_started(subject: Subject) -> bool:
     """Whether a launch file certainly starts Gazebo with the arguments of the xacro."""
     use = subject.launch
     if use is None or not use.simulated or use.unknown:
@@ -122,7 +122,7 @@ class _Choices:
                 name = PurePath(nodes.text_of(node, "filename")).name
                 holder = PurePath(node.origin.file).name
                 self._includes.setdefault(name, []).append((holder, decided))
-            inside = inside or node.tag in _CONDITIONS
+            inside = inside or node.tag in CONDITIONS
             waiting.extend((child, inside) for child in node.children)
 
     def concern(self, origin: Origin) -> bool:

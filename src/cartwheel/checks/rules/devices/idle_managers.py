@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from cartwheel.checks import nodes
 from cartwheel.checks.controller_claims import (
     commands_joints,
     has_standard_hardware,
@@ -15,15 +16,20 @@ from cartwheel.checks.controller_claims import (
 from cartwheel.checks.controller_search import named_files
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
+from cartwheel.checks.rules.devices.hardware_plugins import CONDITIONS, is_started
 from cartwheel.checks.rules.devices.undriven_joints import may_drive
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.model import PluginTag
+from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_only import other_ros
 from cartwheel.errors import Diagnostic
 
 
 @rule(devices_codes.CONTROLLERS_NOT_FOUND)
 def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        yield from _without_parameters(subject, robot)
     for robot, selected in subject.launched:
         if selected.problems or _is_driven_otherwise(robot):
             continue
@@ -45,12 +51,41 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
             if not has_standard_hardware(robot, ros2=ros2) or not offers(robot, ros2=ros2):
                 continue
             for tag in managers(robot, ros2=ros2):
-                if other_ros(robot.description, tag) is not None:
+                if other_ros(robot.description, tag) or without_parameters(tag):
                     # Its controllers do not start anyway.
                     continue
                 found = uncommanded(tag, selected.launch, selected.names)
                 # The controllers may be in a package that uses this one.
                 yield found if selected.names else replace(found, severity="info")
+
+
+def _without_parameters(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
+    """The managers that do not start, because their tags name no file.
+
+    It is a note if arguments of the xacro may name one, and no launch file decides about them.
+    """
+    if not offers(robot, ros2=True):
+        return
+    for tag in managers(robot, ros2=True):
+        found = without_parameters(tag)
+        if found is not None and _may_name_files(subject, tag) and not is_started(subject):
+            hint = "If an argument names the file, pass it."
+            found = replace(found, severity="info", hint=hint)
+        if found is not None:
+            yield found
+
+
+def _may_name_files(subject: Subject, tag: PluginTag) -> bool:
+    """Whether arguments of the xacro decide about what is in a plugin's tag."""
+    place = (tag.origin.file, tag.origin.line)
+    return any(
+        inner.tag in CONDITIONS or "$" in inner.text
+        for file in subject.written
+        for node in nodes.walk(file)
+        if node.tag == "plugin" and (node.origin.file, node.origin.line) == place
+        for inner in nodes.walk(node)
+        if inner.tag in ("parameters", *CONDITIONS)
+    )
 
 
 def _is_driven_otherwise(robot: Robot) -> bool:

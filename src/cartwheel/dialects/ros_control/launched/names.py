@@ -124,6 +124,19 @@ def named_in(
     return as_named(names, entries)
 
 
+def last_names(path: Path, robot: RobotDescription) -> frozenset[str]:
+    """Returns the names of ROS 1's controllers in a file, without namespaces."""
+    try:
+        content = for_robot(read_parameters(path), path, robot)
+    except PluginError:
+        return frozenset()
+    if is_ros2(content):
+        return frozenset()
+    return frozenset(
+        entry.name.rpartition("/")[2] for entry in ros1_entries(content, str(path), _space(robot))
+    )
+
+
 def _space(robot: RobotDescription) -> str:
     """The namespace of a robot's controller manager that its tags state; empty if they do not."""
     tags = (tag.element.find("robotNamespace") for tag in robot.plugins)
