@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from cartwheel.codes.files import (
     LAUNCH_WORLD_ABSENT,
     NOT_A_DESCRIPTION,
 )
+from cartwheel.codes.graph import ENTITY_UNKNOWN
 from cartwheel.codes.world import MODEL_NAME_TAKEN
 
 TWO = """<launch>
@@ -112,6 +114,80 @@ def test_two_robots_of_a_launch_file_drive_in_its_world(package: Path) -> None:
         world.run(1.0)
         assert world.model("right").pose.x > 0.9
         assert abs(world.model("left").pose.x) < 1e-3
+
+
+ARM = """<robot name="arm"><link name="base"><inertial><mass value="5"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="beam"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="world"/>
+  <joint name="foot" type="fixed"><parent link="world"/><child link="base"/></joint>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="beam"/><origin xyz="1 0 0"/>
+  <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="100" velocity="5"/></joint></robot>"""
+PLACED = """<launch>
+  <param name="robot_description" textfile="$(find carts)/urdf/arm.urdf"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="a" args="-urdf -param robot_description
+    -model one -x=1 -J turn 0.5 -J one::foot 2 -J absent 1"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="b" args="-urdf -param robot_description
+    -model two -y 3 -reference_frame one::beam -J two::turn 7 -unpause -wait one"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="c" args="-urdf -param robot_description
+    -model three -reference_frame nowhere"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="d" args="-sdf -database pole -model pole -y 5"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="e" args="-sdf -database lost -model lost"/>
+</launch>"""
+
+
+def test_a_launch_file_places_models_and_joints(package: Path) -> None:
+    (package / "urdf/arm.urdf").write_text(ARM)
+    (package / "models/pole").mkdir(parents=True)
+    pole = HALL[HALL.index("<model") : HALL.index("</world>")]
+    (package / "models/pole/model.sdf").write_text(f'<sdf version="1.6">{pole}</sdf>')
+    file = package / "launch/placed.launch"
+    file.write_text(PLACED)
+    with cw.launch(file) as world:
+        assert world.models[1:] == ("one", "pole", "two")
+        assert world.model("pole").pose.y == 5.0
+        assert world.model("one").joint("turn") == pytest.approx(0.5)
+        # At most the limit, as in Gazebo.
+        assert world.model("two").joint("turn") == pytest.approx(1.0)
+        pose = world.model("two").pose
+        at = (2.0 - 3.0 * math.sin(0.5), 3.0 * math.cos(0.5))
+        assert (pose.x, pose.y) == pytest.approx(at)
+        found = coded(world.diagnostics, ENTITY_UNKNOWN)
+        assert sorted(str(each.values["name"]) for each in found) == ["absent", "nowhere"]
+        (lost,) = coded(world.diagnostics, LAUNCH_VALUE_UNKNOWN)
+        assert (lost.values["name"], 'model "lost"' in lost.hint) == ("lost", True)
+
+
+CREATED = """
+def generate_launch_description():
+    share = get_package_share_directory("carts")
+    cart = Command(["xacro ", share, "/urdf/cart.xacro"])
+    return [
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": cart}]),
+        Node(package="ros_gz_sim", executable="create",
+             arguments=["--topic", "robot_description", "--name=bot", "-x", "1"]),
+        Node(package="ros_gz_sim", executable="create",
+             parameters=[{"topic": "robot_description", "name": "bot", "x": 2.0,
+                          "allow_renaming": True}]),
+        Node(package="ros_gz_sim", executable="create",
+             arguments=["-topic", "robot_description", "-name", "bot", "-x", "3",
+                        "-allow_renaming", "true"]),
+        Node(package="ros_gz_sim", executable="create",
+             arguments=["-topic", "robot_description", "-name", "bot",
+                        "-allow_renaming=false"]),
+    ]
+"""
+
+
+def test_gz_models_have_names_and_places_from_all_kinds_of_arguments(package: Path) -> None:
+    file = package / "launch/created.launch.py"
+    file.write_text(CREATED)
+    with cw.launch(file) as world:
+        assert world.models[1:] == ("bot", "bot_0", "bot_1")
+        assert [world.model(name).pose.x for name in world.models[1:]] == [1.0, 2.0, 3.0]
+        assert len(coded(world.diagnostics, MODEL_NAME_TAKEN)) == 1
 
 
 def test_the_launch_file_starts_the_controllers_that_it_names(package: Path) -> None:

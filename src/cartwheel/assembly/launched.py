@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from cartwheel.codes import files as codes
+from cartwheel.codes.graph import ENTITY_UNKNOWN
 from cartwheel.codes.world import MODEL_NAME_TAKEN
 from cartwheel.control.place import placed
 from cartwheel.description import load_robot, load_world
 from cartwheel.description.files.named_files import bundled_worlds
+from cartwheel.description.kinematics import link_poses
 from cartwheel.description.launches import LaunchedModel, LaunchStart, LaunchUse, read_launch
 from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.ros_control.selection import published_by
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.gazebo.entities import INERTIAL
+from cartwheel.gazebo.state import bounded
 from cartwheel.geometry import Pose
 from cartwheel.graph.renaming import Bridged
 from cartwheel.messages import type_name
@@ -42,6 +47,8 @@ class Start:
     namespace: str = "/"
     controllers: LaunchUse | Sequence[Path] | Literal["auto"] = ()
     """As for `Session.spawn`."""
+    joints: Mapping[str, float] = field(default_factory=dict)
+    """Positions of joints with which it starts, rad or m."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,7 +101,8 @@ def open_launch(
     if not spawned and not models:
         # Of those that are only published, one is shown where there is no other model.
         spawned = shown[:1]
-    for each in spawned:
+    placed_last = sorted(spawned, key=lambda each: each.spawn.frame not in INERTIAL)
+    for each in placed_last:
         # Several models may have the same description.
         key = (each.description, frozenset(each.use.arguments.items()))
         if key not in robots:
@@ -103,9 +111,22 @@ def open_launch(
             )
         model = _start(each, robots[key])
         name = model.name or model.description.name
+        if name in names and each.spawn.renames:
+            numbered = (f"{name}_{number}" for number in itertools.count())
+            name = next(one for one in numbered if one not in names)
+            model = replace(model, name=name)
         if name not in names:
+            frame = _frame(each.spawn.frame, opened, models)
+            if frame is None:
+                found.append(_astray(start.file, name, each.spawn.frame))
+                continue
+            if each.spawn.frame not in INERTIAL:
+                model = replace(model, pose=frame @ (model.pose or model.description.pose))
+            own = {joint.removeprefix(f"{name}::"): value for joint, value in model.joints.items()}
+            model = replace(model, joints=own)
             names.add(name)
             models.append(model)
+            found += _without_joints(start.file, name, model)
         elif not each.is_shown:
             found.append(_refused(start.file, name))
     return Launched(
@@ -150,6 +171,53 @@ def _out_of_world(
     return replace(world, models=rest), list(found.values())
 
 
+def _frame(name: str, world: WorldDescription, models: Sequence[Start]) -> Pose | None:
+    """The pose of a model or link in the world; None if there is none of this name.
+
+    Args:
+        name: A name in `INERTIAL`, that of a model, or ``MODEL::LINK``.
+        world: The world.
+        models: The models that are spawned in it.
+    """
+    if name in INERTIAL:
+        return Pose()
+    wanted, _, link = name.partition("::")
+    known = [Start(description=each, name=each.name, pose=each.pose) for each in world.models]
+    for each in (*known, *models):
+        if (each.name or each.description.name) == wanted:
+            pose = each.pose or each.description.pose
+            if not link:
+                return pose
+            inside = link_poses(each.description, each.joints).get(link)
+            return None if inside is None else pose @ inside
+    return None
+
+
+def _astray(file: Path, name: str, frame: str) -> Diagnostic:
+    """What Gazebo does with a model whose reference frame does not exist."""
+    return ENTITY_UNKNOWN.diagnostic(
+        f'the reference frame "{frame}" does not exist, so the model "{name}" is not spawned, as '
+        "in Gazebo",
+        severity="warning",
+        origin=Origin(file=str(file)),
+        values={"name": frame, "model": name},
+    )
+
+
+def _without_joints(file: Path, name: str, model: Start) -> list[Diagnostic]:
+    """The joints whose positions are stated, although the model does not have them."""
+    return [
+        ENTITY_UNKNOWN.diagnostic(
+            f'the model "{name}" has no joint "{joint}", so its position has no effect',
+            severity="warning",
+            origin=Origin(file=str(file)),
+            values={"name": joint, "model": name},
+        )
+        for joint in model.joints
+        if model.description.joint(joint) is None
+    ]
+
+
 def _refused(file: Path, name: str) -> Diagnostic:
     """What Gazebo does with a model whose name another one has."""
     return MODEL_NAME_TAKEN.diagnostic(
@@ -172,7 +240,7 @@ def spawn_all(session: Session, launched: Launched, package_path: Sequence[Path]
     with session.spawning():
         for each in launched.diagnostics:
             session.simulation.engine.report(each)
-        return [
+        names = [
             session.spawn(
                 each.description,
                 name=each.name,
@@ -183,6 +251,16 @@ def spawn_all(session: Session, launched: Launched, package_path: Sequence[Path]
             )
             for each in launched.models
         ]
+    for name, each in zip(names, launched.models, strict=True):
+        joints = {joint: each.description.joint(joint) for joint in each.joints}
+        positions = {
+            joint.name: bounded(joint, each.joints[joint.name])
+            for joint in joints.values()
+            if joint is not None and joint.type != "fixed"
+        }
+        if positions:
+            session.simulation.set_joint_positions(name, positions)
+    return names
 
 
 def _world(
@@ -220,4 +298,5 @@ def _start(model: LaunchedModel, robot: RobotDescription) -> Start:
         pose=placed(robot.pose, spawn.place),
         namespace=spawn.namespace or "/",
         controllers=model.use,
+        joints=spawn.joints,
     )

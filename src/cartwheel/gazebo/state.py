@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from cartwheel.codes.graph import REQUEST_INVALID
+from cartwheel.description.model import Joint
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.gazebo.entities import Entities, Motion
 from cartwheel.gazebo.requests import (
@@ -26,6 +28,15 @@ from cartwheel.messages import header, message_class
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.limits import number
 from cartwheel.world.entry import scoped
+
+
+def bounded(joint: Joint, position: float) -> float:
+    """A position that Gazebo sets, within the limits of the joint, rad or m."""
+    if joint.type not in ("revolute", "prismatic"):
+        return position
+    lower = -math.inf if joint.axis.lower is None else joint.axis.lower
+    upper = math.inf if joint.axis.upper is None else joint.axis.upper
+    return float(min(max(position, lower), upper))
 
 
 class States:
@@ -151,14 +162,9 @@ class States:
             if joint is not None and joint.type == "fixed":
                 notes.append(f'joint "{own}" is fixed')
                 continue
-            if joint is not None and joint.type in ("revolute", "prismatic"):
-                lower = -np.inf if joint.axis.lower is None else joint.axis.lower
-                upper = np.inf if joint.axis.upper is None else joint.axis.upper
-                bounded = min(max(value, lower), upper)
-                if bounded != value:
-                    notes.append(f'joint "{own}" stops at its limit of {bounded:g}')
-                    value = float(bounded)
-            wanted[own] = value
+            wanted[own] = value if joint is None else bounded(joint, value)
+            if wanted[own] != value:
+                notes.append(f'joint "{own}" stops at its limit of {wanted[own]:g}')
         self._simulation.set_joint_positions(request.model_name, wanted)
         return Answer("SetModelConfiguration: success", notes=tuple(notes))
 

@@ -127,6 +127,15 @@ class Classes:
         space = resolved(self.facts.namespace, joined(words.get("namespace", "")))
         described = [each for each in arguments if isinstance(each, Description)]
         pairs = words.get("remappings")
+        given = words.get("parameters")
+        values: dict[str, str] = {}
+        for each in given if isinstance(given, list) else []:
+            if isinstance(each, dict):
+                values |= {
+                    name: joined(value)
+                    for name, value in each.items()
+                    if isinstance(name, str) and not isinstance(value, Description)
+                }
         self.facts.node(
             package,
             executable,
@@ -138,6 +147,7 @@ class Classes:
                 for each in (pairs if isinstance(pairs, list) else [])
                 if isinstance(each, list) and len(each) == 2
             },
+            values=values,
         )
         parameters = words.get("parameters")
         for each in parameters if isinstance(parameters, list) else []:

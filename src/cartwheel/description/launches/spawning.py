@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,6 +19,12 @@ _FILES = frozenset({"-file", "-f", "--file"})
 _SOURCES = frozenset({"-param", "-topic"})
 _NAMES = frozenset({"-model", "-entity", "-name"})
 _SPACES = frozenset({"-robot_namespace", "-namespace"})
+_WITH_VALUE = re.compile(r"(-[A-Za-z_]+)=(.*)", re.DOTALL)
+"""An argument with its value in the same word, as in ``-x=1``."""
+_OF_GZ = "create"
+"""The executable of ros_gz_sim. It also accepts arguments with two hyphens."""
+_RENAMES = re.compile(r"--?allow_renaming(?:=(?:true|True|t|1|yes|y))?")
+"""A flag of `_OF_GZ`. A value in the next word has no effect."""
 _IN_NAMESPACE = frozenset({"spawn_model", "spawn_entity.py"})
 """Those whose models have the namespace of their node, unless another one is stated."""
 _FARTHEST = 1e6
@@ -41,7 +48,16 @@ class Spawn:
     place: Mapping[str, float] = field(default_factory=dict)
     """Those of x, y, z, roll, pitch and yaw that are stated and known, m and rad."""
     unknown: frozenset[str] = frozenset()
-    """Those of name, namespace and place that are stated, but unknown."""
+    """Those of name, namespace, place and joints that are stated, but unknown."""
+    model: str = ""
+    """The name of the model in Gazebo's model path that is spawned; empty if another description
+    is."""
+    frame: str = ""
+    """The model or link in whose frame the place is; empty for the world."""
+    joints: Mapping[str, float] = field(default_factory=dict)
+    """Positions of joints with which it starts, rad or m."""
+    renames: bool = False
+    """Whether it gets another name if its own one is in use."""
 
 
 def spawn_of(executable: str, words: Sequence[str], space: str) -> Spawn:
@@ -52,11 +68,15 @@ def spawn_of(executable: str, words: Sequence[str], space: str) -> Spawn:
         words: Its arguments.
         space: Its namespace.
     """
-    file, source, name = None, "", ""
+    file, source, name, model, frame = None, "", "", "", ""
+    renames = executable == _OF_GZ and any(_RENAMES.fullmatch(word) for word in words)
+    words = [part for word in words for part in _parts(executable, word)]
     namespace = space if executable in _IN_NAMESPACE else ""
     place: dict[str, float] = {}
+    joints: dict[str, float] = {}
     stated = 0
-    for flag, word in itertools.pairwise(words):
+    unknown: set[str] = set()
+    for index, (flag, word) in enumerate(itertools.pairwise(words)):
         if flag in _FILES:
             file = Path(word)
         elif flag in _SOURCES:
@@ -70,7 +90,20 @@ def spawn_of(executable: str, words: Sequence[str], space: str) -> Spawn:
             name = word
         elif flag in _SPACES:
             namespace = word.strip("/")
-    unknown = {"place"} if stated > len(place) else set()
+        elif flag == "-database":
+            model = word
+        elif flag == "-reference_frame":
+            frame = word.strip()
+        elif flag == "-J" and executable == "spawn_model":
+            number = _number(words[index + 2]) if index + 2 < len(words) else None
+            if number is None or UNKNOWN in word:
+                unknown.add("joints")
+            else:
+                joints[word] = number
+    if UNKNOWN in frame:
+        frame, stated = "", len(place) + 1
+    if stated > len(place):
+        unknown.add("place")
     if UNKNOWN in name:
         name = ""
         unknown.add("name")
@@ -83,8 +116,20 @@ def spawn_of(executable: str, words: Sequence[str], space: str) -> Spawn:
         name=name,
         namespace=namespace,
         place=place,
+        model=model,
+        frame=frame,
+        joints=joints,
+        renames=renames,
         unknown=frozenset(unknown),
     )
+
+
+def _parts(executable: str, word: str) -> Sequence[str]:
+    """An argument of a spawner, with its value if the same word contains it."""
+    if executable == _OF_GZ and word.startswith("--") and word != "--ros-args":
+        word = word[1:]
+    found = _WITH_VALUE.fullmatch(word)
+    return (word,) if found is None else found.groups()
 
 
 def resolved(space: str, name: str) -> str:

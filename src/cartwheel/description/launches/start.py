@@ -35,7 +35,12 @@ _SHOWN = 4
 _MOST_TRIED = 16
 """Maximum number of expressions whose other value is tried."""
 _ENDS = (".launch", ".launch.xml", ".py")
-_PARTS = {"place": "a part of the pose", "name": "the name", "namespace": "the namespace"}
+_PARTS = {
+    "place": "a part of the pose",
+    "name": "the name",
+    "namespace": "the namespace",
+    "joints": "the position of a joint",
+}
 """What may be unknown of a model."""
 
 
@@ -280,7 +285,7 @@ def _described(facts: Facts, uses: Sequence[LaunchUse]) -> Iterator[tuple[Spawn,
     others = [number for number in range(len(uses)) if number not in own] or [*range(len(uses))]
     for spawn in facts.spawns or ([Spawn()] if uses else []):
         number = spawn.described
-        if number is None and spawn.file is None and others:
+        if number is None and spawn.file is None and not spawn.model and others:
             number = facts.published.get(spawn.source, others[0])
         yield spawn, None if number is None or number == ABSENT else uses[number]
 

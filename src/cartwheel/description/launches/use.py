@@ -266,6 +266,7 @@ class Facts:
         *,
         described: int | None = None,
         remappings: Mapping[str, str] = MappingProxyType({}),
+        values: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         """Adds what a node starts: models, controllers or a bridge.
 
@@ -276,13 +277,20 @@ class Facts:
             space: Its namespace.
             described: The number of the description whose text is one of its arguments.
             remappings: New names of its topics, by their old names.
+            values: Its parameters, by name.
         """
         if package in _GAZEBO:
+            if executable == "create":
+                # It also accepts its arguments as parameters.
+                self.effort.spend(len(values))
+                words = [*words, *(f"-{name}={value}" for name, value in values.items())]
             self.simulated |= executable in _SPAWNERS
             if executable in MODEL_SPAWNERS:
                 spawn = spawn_of(executable, words, space)
                 if spawn.file is not None:
                     described = self.add(spawn.file, {})
+                elif spawn.model:
+                    described = self._model(spawn.model)
                 self.spawns.append(replace(spawn, described=described))
             else:
                 self._begin(world_in(words))
@@ -294,6 +302,21 @@ class Facts:
             self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
             self._control(by_spawner(words, space))
+
+    def _model(self, name: str) -> int:
+        """Adds the SDF of a model that the package of the launch file contains.
+
+        Returns:
+            As for `add`.
+        """
+        self.effort.spend(_LOOK)
+        if self.home is not None and re.fullmatch(r"[\w.-]+", name):
+            for folder in (self.home / "models", self.home):
+                if is_file(file := folder / name / "model.sdf"):
+                    self.descriptions.append((file, {}))
+                    return len(self.descriptions) - 1
+        self.absent[f'model "{name}"'.replace(UNKNOWN, "…")] = None
+        return ABSENT
 
     def bridge(self, text: str) -> None:
         """Adds a configuration file of ros_gz_bridge if it exists."""

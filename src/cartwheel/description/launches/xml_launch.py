@@ -108,6 +108,11 @@ class _Reader:
                     for child in node.children
                     if child.tag == "remap" and self._holds(child)
                 },
+                values={
+                    child.attributes.get("name", ""): self._value(child, "value")
+                    for child in node.children
+                    if child.tag == "param" and "value" in child.attributes and self._holds(child)
+                },
             )
             if kind == "type" and package == "controller_manager":
                 facts.seek(split(self._value(node, "args")), self._space(node))
