@@ -72,6 +72,20 @@ def test_a_controller_of_the_wheels_of_a_drive_is_why_it_is_slow(tmp_path):
     ] * 2
 
 
+def test_a_controller_of_ros_1_is_why_a_drive_is_slow(tmp_path):
+    """The file is not named by the manager, without which the robot is tested again."""
+    file = tmp_path / "base.yaml"
+    file.write_text(
+        "base: {type: diff_drive_controller/DiffDriveController, left_wheel: left_joint,"
+        " right_wheel: right_joint, wheel_separation: 0.2, wheel_radius: 0.05}\n"
+    )
+    path = written(tmp_path, cart(), plugin(), managed("Velocity"))
+    verdict = try_robot(path, standing=1.0, controllers=[file])
+    assert [(each.subject, each.code) for each in verdict.faults] == [
+        ("/cmd_vel", JOINT_DRIVEN_TWICE)
+    ] * 2
+
+
 def test_a_wrong_size_explains_the_turn_rate_of_two_drives_before_their_number(tmp_path):
     again = plugin(0.4).replace('name="drive"', 'name="again"')
     verdict = try_robot(written(tmp_path, cart(), plugin(), again), standing=1.0)

@@ -48,6 +48,7 @@ from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.selection import selection, with_published_control
+from cartwheel.dialects.ros_control.suggestion import is_controlled
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT, refused
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
 
@@ -169,7 +170,8 @@ def _for_simulation(
 
 
 def _again(verdict: Verdict, controllers: Sequence[Path], robot: RobotDescription) -> Verdict:
-    """The verdict on a robot with fewer plugins."""
+    """The verdict on a robot with fewer plugins, perhaps without one that runs controllers."""
+    controllers = controllers if is_controlled(robot) else ()
     start = replace(verdict, drives=(), reaches=(), spins=(), flights=())
     with World(surroundings(robot), lenient=True) as world:
         model = put(world, robot, controllers)
