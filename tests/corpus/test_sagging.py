@@ -106,7 +106,8 @@ def started(angle, *, effort=200.0):
             f'<param name="initial_value">{value}</param></state_interface>',
         )
         joints.append(joint)
-    return quadruped(ros2_system(*joints) + f"<gazebo>{ros2_plugin('hold.yaml')}</gazebo>", effort=effort)
+    plugin = f"<gazebo>{ros2_plugin('hold.yaml')}</gazebo>"
+    return quadruped(ros2_system(*joints) + plugin, effort=effort)
 
 
 def test_a_robot_that_ros2_control_bends_at_the_start_stands(tmp_path):

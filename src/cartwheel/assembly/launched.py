@@ -251,12 +251,11 @@ def spawn_all(session: Session, launched: Launched, package_path: Sequence[Path]
             )
             for each in launched.models
         ]
-    for name, each in zip(names, launched.models, strict=True):
-        joints = {joint: each.description.joint(joint) for joint in each.joints}
+    for name, model in zip(names, launched.models, strict=True):
         positions = {
-            joint.name: bounded(joint, each.joints[joint.name])
-            for joint in joints.values()
-            if joint is not None and joint.type != "fixed"
+            joint.name: bounded(joint, model.joints[joint.name])
+            for joint in model.description.joints
+            if joint.name in model.joints and joint.type != "fixed"
         }
         if positions:
             session.simulation.set_joint_positions(name, positions)

@@ -19,6 +19,7 @@ from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.interfaces import COMMANDS, SYSTEMS, hardware_of
 from cartwheel.dialects.ros_control.parameters import OWN, SIZES, Role, Row, rows
+from cartwheel.dialects.ros_control.sim_types import PLAIN
 from cartwheel.errors import Diagnostic, Severity, UnknownNameError
 
 _INTERFACES = {
@@ -32,7 +33,6 @@ _SIMULATED = re.compile(
     r"(?i:gazebo|gz_ros2|ign_ros2|ignition|mock|fake|generic|simul)|Sim(System)?$"
 )
 """Simulated ros2_control hardware: a real robot's tags may describe different interfaces."""
-_STANDARD_HARDWARE = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
 _BROADCASTER = "Broadcaster"
 """End of the types of ROS 2's controllers that command nothing."""
 _GAINS = ("p", "i", "ff_velocity_scale")
@@ -266,17 +266,9 @@ def uncommanded(
         started: Their names.
         files: The YAML files that it loads.
     """
-    if plugin_named(tag.filename) is plugin_named(ROS_CONTROL):
-        for path in files:
-            file = ControlFile(path=path, named=True)
-            if path.is_file() and file.is_ros2:
-                return CONTROLLERS_NOT_FOUND.diagnostic(
-                    'the controllers are below "ros__parameters", as in ROS 2, where the '
-                    "controller manager of ROS 1 does not find them",
-                    origin=file.origin(file.root),
-                    values={"started": tuple(started)},
-                    hint='Write them without "controller_manager" and "ros__parameters".',
-                )
+    layout = other_layout(tag, started, files)
+    if layout is not None:
+        return layout
     message = "no file contains controllers for this controller manager"
     if started and launch is not None:
         names = ", ".join(f'"{name}"' for name in started)
@@ -287,6 +279,27 @@ def uncommanded(
     )
 
 
+def other_layout(
+    tag: PluginTag, started: Sequence[str], files: Sequence[Path]
+) -> Diagnostic | None:
+    """The diagnostic that a launch file loads a file for ROS 2 for a manager of ROS 1; None if it
+    does not. See `uncommanded` for the arguments.
+    """
+    if plugin_named(tag.filename) is not plugin_named(ROS_CONTROL):
+        return None
+    for path in files:
+        file = ControlFile(path=path, named=True)
+        if path.is_file() and file.is_ros2:
+            return CONTROLLERS_NOT_FOUND.diagnostic(
+                'the controllers are below "ros__parameters", as in ROS 2, where the '
+                "controller manager of ROS 1 does not find them",
+                origin=file.origin(file.root),
+                values={"started": tuple(started)},
+                hint='Write them without "controller_manager" and "ros__parameters".',
+            )
+    return None
+
+
 def has_standard_hardware(robot: Robot, *, ros2: bool) -> bool:
     """Whether the hardware provides the interfaces listed in the tags, as in simulation."""
     if ros2:
@@ -295,7 +308,7 @@ def has_standard_hardware(robot: Robot, *, ros2: bool) -> bool:
     for tag, _ in robot.plugins():
         if "ros_control" in tag.filename and "ros2" not in tag.filename:
             kind = next(tag.element.find_all("robotSimType"), None)
-            if kind is not None and kind.text.strip() not in _STANDARD_HARDWARE:
+            if kind is not None and kind.text.strip() not in PLAIN:
                 return False
     return True
 

@@ -149,7 +149,9 @@ def _faults(
         # Which of its controllers would not start does not matter.
         missing = {name: each for name, each in missing.items() if each.test != "controller"}
     missing |= stopped_ones | unmanaged
-    missing |= {each.subject: each for each in unmanaged_transmissions(verdict, description)}
+    missing |= {
+        each.subject: each for each in unmanaged_transmissions(verdict, description, findings)
+    }
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 
 from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running
-from cartwheel.corpus.fall_causes import LEFT_OUT, is_body_lost
+from cartwheel.corpus.fall_causes import is_body_lost
 from cartwheel.corpus.faults import Fault, coded, most_severe
 from cartwheel.corpus.movers import (
     ignored_movers,
@@ -18,9 +17,8 @@ from cartwheel.corpus.movers import (
     moving_plugins,
 )
 from cartwheel.corpus.verdict import Verdict
-from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.model import PluginTag, RobotDescription
-from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
+from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_only import other_ros, other_tags
@@ -75,39 +73,21 @@ def _stands_still(description: RobotDescription) -> bool:
     return bool(lost) and all(id(each) in lost for each in commanded)
 
 
-def unmanaged_transmissions(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
+def unmanaged_transmissions(
+    verdict: Verdict,
+    description: RobotDescription,
+    findings: Callable[[], Sequence[Diagnostic]],
+) -> Iterator[Fault]:
     """Transmissions of a robot that a launch file starts in Gazebo with controllers, although no
     plugin runs them.
     """
     use = verdict.launch
-    movable = {joint.name for joint in description.joints if joint.type != "fixed"}
-    listed = [
-        each
-        for each in description.transmissions
-        if any((one.attribute("name") or "").strip() in movable for one in each.find_all("joint"))
-    ]
-    if (
-        verdict.movers
-        or use is None
-        or not use.simulated
-        or all(_STATES in name for name in use.spawned)
-        or not listed
-        or description.ros2_control
-        or ros_version(Path(description.origin.file)) == 2
-        or any("control" in short_name(tag.filename) for tag in description.plugins)
-        or coded(description.diagnostics, LEFT_OUT) is not None
-    ):
+    if verdict.movers or use is None or not use.spawned or not description.transmissions:
         return
-    names = ", ".join(f'"{name}"' for name in use.spawned)
-    file = f"lib{ROS_CONTROL}.so"
-    reason = devices.HARDWARE_WITHOUT_PLUGIN.diagnostic(
-        f'"{use.file.name}" starts the controllers {names}, but the description does not contain '
-        f'the plugin "{file}", which runs them, so no controller starts',
-        origin=listed[0].origin,
-        values={"hardware": "transmission", "plugin": file, "name": use.spawned[0]},
-        hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
-    )
-    yield Fault(test="controller", subject=use.spawned[0], reason=reason)
+    for each in findings():
+        known = each.values.get("hardware") == "transmission"
+        if known and each.code is devices.HARDWARE_WITHOUT_PLUGIN:
+            yield Fault(test="controller", subject=str(each.values["name"]), reason=each)
 
 
 def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:

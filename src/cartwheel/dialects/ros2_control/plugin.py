@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from cartwheel import yaml_text
 from cartwheel.codes import devices, running
-from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros2_control.components import HardwareComponents
+from cartwheel.dialects.ros2_control.contents import without_controllers
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
@@ -22,7 +21,6 @@ from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerFiles,
     controller_entries,
-    misspelt_key,
     moved_file,
     ros2_file,
     stated_path,
@@ -42,7 +40,6 @@ from cartwheel.dialects.ros_control.interfaces import (
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
-from cartwheel.errors import Origin
 
 _GZ_PRIORITIES = ("velocity", "position", "effort")
 """The command that a joint with several commands follows in gz_ros2_control, the first one."""
@@ -111,14 +108,11 @@ class Ros2Control(ControlPlugin):
         contents = [files.read_ros2(path, part.description) for path in paths]
         merged = ros2_file(contents, self.namespace, config.manager)
         source = ", ".join(str(path) for path in paths)
-        if merged.elsewhere and not merged.manager:
-            self.warn(
-                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
-                f"the controller files have parameters for {', '.join(merged.elsewhere)}, but the "
-                f'controller manager is "/{self.namespace}/{config.manager}", so no controller '
-                "starts".replace("//", "/"),
-                values={"nodes": tuple(merged.elsewhere)},
-            )
+        place = f"{self.namespace}/{config.manager}"
+        files_read = [*zip(paths, contents, strict=True)]
+        lost = without_controllers(merged, files_read, place, self.tag.origin)
+        if lost is not None:
+            part.report(lost)
         settings = Settings(merged.manager, config.manager, source)
         rate = settings.number("update_rate", 100.0)
         if rate <= 0:
@@ -146,8 +140,6 @@ class Ros2Control(ControlPlugin):
                     values={"name": sensor.name},
                 )
         entries = controller_entries(merged, self.namespace, source)
-        if paths and not entries and not merged.elsewhere:
-            self._report_none(paths, contents)
         # In Gazebo Classic, it sets the velocity of a joint without a motor.
         forced = short_name(self.tag.filename) == "gazebo_ros2_control"
         hardware = Hardware(self, joints, _gains(joints, merged.nodes), forced=forced)
@@ -169,24 +161,6 @@ class Ros2Control(ControlPlugin):
             name=config.manager,
             entries=entries,
             components=HardwareComponents(simulated_systems(part.description), joints, sensors),
-        )
-
-    def _report_none(self, paths: Sequence[Path], contents: Sequence[Mapping[str, Any]]) -> None:
-        """Reports that the files contain no controllers, and why, if it is known."""
-        source = ", ".join(shown_path(path) for path in paths)
-        message, origin = "no parameter specifies a controller type", Origin(file=source)
-        found = ((path, misspelt_key(each)) for path, each in zip(paths, contents, strict=True))
-        path, key = next((each for each in found if each[1]), (None, ""))
-        if path is not None:
-            message = f'ROS 2 refuses the file, because "{key}" is not "ros__parameters"'
-            lines = yaml_text.read(path).splitlines()
-            named = (at for at, line in enumerate(lines, 1) if line.strip(" '\"").startswith(key))
-            origin = Origin(file=shown_path(path), line=next(named, 0))
-        self.warn(
-            devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
-            f"{message}, so no controller starts",
-            at=origin,
-            values={"key": key},
         )
 
     def _path(self, text: str) -> Path | None:

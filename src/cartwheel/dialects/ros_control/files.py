@@ -208,6 +208,16 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
     return content
 
 
+def of_ros2(path: Path) -> PluginError:
+    """The error that a controller manager of ROS 1 receives a file for ROS 2."""
+    return PluginError(
+        "the file is for ros2_control, but the robot uses gazebo_ros_control",
+        code=devices.CONTROLLERS_FILE_MISMATCH,
+        origin=Origin(file=shown_path(path)),
+        hint="Pass the file that the launch file loads with rosparam.",
+    )
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ros2File:
     """The parameters in one or more ros2_control files."""

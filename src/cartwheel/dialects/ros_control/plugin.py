@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices
@@ -11,7 +12,7 @@ from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros_control import steer_bot
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
-from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles, is_ros2
+from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles, is_ros2, of_ros2
 from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import (
@@ -24,11 +25,10 @@ from cartwheel.dialects.ros_control.launched.names import ros1_entries
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.services import Ros1ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.sim_types import is_plain, is_unknown, unknown_hardware
 from cartwheel.dialects.tags import tag
-from cartwheel.errors import Origin, PluginError
+from cartwheel.errors import Origin
 from cartwheel.graph import is_name
-
-_PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,17 +78,10 @@ class RosControl(ControlPlugin):
     def configure(self) -> None:
         config: RosControlParameters = self.config
         part = self.part
-        plain = config.sim_type.rpartition("::")[2] in _PLAIN
+        plain = is_plain(config.sim_type)
         steered = config.sim_type == steer_bot.SIM_TYPE
-        if config.sim_type.strip().startswith("gazebo_ros_control/") and not plain:
-            self.warn(
-                devices.HARDWARE_UNKNOWN,
-                f'<robotSimType>: the package "gazebo_ros_control" does not contain '
-                f'"{config.sim_type.strip()}", so DefaultRobotHWSim is used; Gazebo would start no '
-                "controller",
-                severity="error",
-                values={"hardware": config.sim_type.strip(), "meant": _PLAIN[0]},
-            )
+        if is_unknown(config.sim_type):
+            part.report(unknown_hardware(self.tag, config.sim_type))
         elif not plain and not steered:
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
@@ -184,12 +177,7 @@ class RosControl(ControlPlugin):
     def _load(self, path: str, content: Mapping[str, Any]) -> list[ControllerEntry]:
         """Sets a file's parameters in the namespace, as rosparam does; returns its controllers."""
         if is_ros2(content):
-            raise PluginError(
-                "the file is for ros2_control, but the robot uses gazebo_ros_control",
-                code=devices.CONTROLLERS_FILE_MISMATCH,
-                origin=Origin(file=path),
-                hint="Pass the file that the launch file loads with rosparam.",
-            )
+            raise of_ros2(Path(path))
         entries = ros1_entries(content, path, self.namespace)
         if not entries and steer_bot.PARAMETERS not in content:
             self.warn(

@@ -71,6 +71,8 @@ class Selection:
     controllers are not started."""
     launch: Path | None = None
     """The launch file that starts the controllers."""
+    loaded: tuple[Path, ...] = ()
+    """All YAML files that it loads."""
 
 
 def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -> Selection:
@@ -171,8 +173,14 @@ def selection(
         files = files if names else ()
     missing = unfound(starting) if is_of_ros1(robot) else ()
     problems = (*lost, *missing, *reported, *apart, *only_loaded(starting))
-    launch = None if starting is None else starting.file
-    return Selection(files=files, names=names, idle=idle, problems=problems, launch=launch)
+    return Selection(
+        files=files,
+        names=names,
+        idle=idle,
+        problems=problems,
+        launch=None if starting is None else starting.file,
+        loaded=() if starting is None else starting.controllers,
+    )
 
 
 def _lent(

@@ -2,14 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
-from cartwheel.checks.controller_files import repeated_keys
+from cartwheel.checks.controller_claims import managers
+from cartwheel.checks.controller_files import ControlFile, repeated_keys
 from cartwheel.checks.controller_search import named_files, resolved
+from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
-from cartwheel.errors import Diagnostic
+from cartwheel.description.elements.xml import shown_path
+from cartwheel.description.model import PluginTag
+from cartwheel.dialects.remappings import namespace_of
+from cartwheel.dialects.ros2_control.contents import without_controllers
+from cartwheel.dialects.ros_control.files import (
+    for_robot,
+    is_ros2,
+    of_ros2,
+    read_parameters,
+    read_ros2,
+    ros2_file,
+)
+from cartwheel.dialects.ros_control.launched.names import ros1_entries
+from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
+from cartwheel.errors import Diagnostic, Origin, PluginError
 
 
 @rule(devices_codes.CONTROLLERS_FILE_UNREADABLE)
@@ -22,6 +40,67 @@ def controllers_file(subject: Subject) -> Iterator[Diagnostic]:
     for _, file in subject.control:
         if file.problem is not None:
             yield file.problem
+
+
+@rule(devices_codes.CONTROLLERS_FILE_WITHOUT_CONTROLLERS)
+def unusable_files(subject: Subject) -> Iterator[Diagnostic]:
+    """Files from which a controller manager starts no controller, or that it refuses."""
+    for robot in subject.robots:
+        own = [file for owner, file in subject.control if owner is robot]
+        for tag in managers(robot, ros2=True):
+            elements = {id(each) for each in tag.element.find_all("parameters")}
+            stated = [file for file in own if file.element and id(file.element) in elements]
+            files = stated or [file for file in own if file.element is None]
+            yield from _unusable(subject, robot, tag, files)
+        if managers(robot, ros2=False):
+            # Files that were only found are not for other versions.
+            yield from _of_ros1(robot, [file for file in own if file.named])
+
+
+def _unusable(
+    subject: Subject, robot: Robot, tag: PluginTag, files: Sequence[ControlFile]
+) -> Iterator[Diagnostic]:
+    """The files of a manager of ROS 2."""
+    contents: list[tuple[Path, Mapping[str, Any]]] = []
+    for file in files:
+        if file.problem is not None:
+            return
+        try:
+            contents.append((file.path, read_ros2(file.path, robot.description)))
+        except PluginError as error:
+            yield error.diagnostic()
+            return
+    space = namespace_of(tag)
+    if space is None:
+        plain = tag.element.find("robotNamespace")
+        space = "" if plain is None else plain.text
+    stated = (tag.element.find(f"controller_manager{each}") for each in ("_name", "_node_name"))
+    name = next((each.text.strip() for each in stated if each is not None), "controller_manager")
+    merged = ros2_file([content for _, content in contents], space.strip(), name)
+    place = f"{space.strip().strip('/')}/{name}"
+    found = without_controllers(merged, contents, place, tag.origin)
+    spawned = subject.launch.spaces if subject.launch is not None else frozenset[str]()
+    if found is not None and (not merged.elsewhere or spawned <= {""}):
+        yield found
+
+
+def _of_ros1(robot: Robot, files: Sequence[ControlFile]) -> Iterator[Diagnostic]:
+    """Files that the user passes for a manager of ROS 1."""
+    for file in files:
+        if file.problem is not None:
+            continue
+        try:
+            content = for_robot(read_parameters(file.path), file.path, robot.description)
+        except PluginError as error:
+            yield error.diagnostic()
+            continue
+        if is_ros2(content):
+            yield of_ros2(file.path).diagnostic()
+        elif not ros1_entries(content, str(file.path)) and PARAMETERS not in content:
+            yield devices_codes.CONTROLLERS_FILE_WITHOUT_CONTROLLERS.diagnostic(
+                "no parameter specifies a controller type, so no controller starts",
+                origin=Origin(file=shown_path(file.path)),
+            )
 
 
 @rule(devices_codes.CONTROLLER_PARAMETER_REPEATED)

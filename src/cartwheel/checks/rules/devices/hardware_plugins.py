@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from pathlib import PurePath
+from dataclasses import replace
+from pathlib import Path, PurePath
 
 from cartwheel.checks import nodes
+from cartwheel.checks.controller_claims import managers
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
+from cartwheel.checks.rules.devices.undriven_joints import drives_joints
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.codes import files
 from cartwheel.description.elements.node import Node
-from cartwheel.dialects.catalogue import short_name
+from cartwheel.description.files.ros_version import ros_version
+from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros_control.interfaces import (
     MANAGERS,
@@ -20,8 +25,13 @@ from cartwheel.dialects.ros_control.interfaces import (
     loaded_by,
     package_system,
 )
+from cartwheel.dialects.ros_control.sim_types import is_unknown, unknown_hardware
 from cartwheel.errors import Diagnostic, Origin
 
+_STATES = "joint_state"
+"""Part of the names of controllers that only publish."""
+_ABSENT = (files.INCLUDE_ABSENT, files.MACRO_ABSENT)
+"""Parts that may contain the plugin."""
 CONDITIONS = ("xacro:if", "xacro:unless")
 """Elements of a xacro whose contents depend on its arguments."""
 
@@ -31,6 +41,7 @@ def hardware_without_plugin(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         description = robot.description
         yield from _unloaded(subject, robot)
+        yield from _without_manager(subject, robot)
         if any("control" in short_name(tag.filename) for tag in description.plugins):
             continue  # perhaps a controller manager under another name
         for system in description.ros2_control:
@@ -45,6 +56,48 @@ def hardware_without_plugin(subject: Subject) -> Iterator[Diagnostic]:
                 values={"hardware": hardware, "plugin": file, "name": name},
                 hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
             )
+
+
+@rule(devices_codes.HARDWARE_UNKNOWN)
+def hardware_unknown(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for tag in managers(robot, ros2=False):
+            kind = tag.element.find("robotSimType")
+            if kind is not None and is_unknown(kind.text):
+                yield replace(unknown_hardware(tag, kind.text), origin=kind.origin)
+
+
+def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
+    """Transmissions of a robot that a launch file starts in Gazebo with controllers, although no
+    plugin runs them.
+    """
+    description, use = robot.description, subject.launch
+    movable = {each.name for each in description.joints if each.type != "fixed"}
+    listed = [
+        each
+        for each in description.transmissions
+        if any((one.attribute("name") or "").strip() in movable for one in each.find_all("joint"))
+    ]
+    if (
+        use is None
+        or not use.simulated
+        or all(_STATES in name for name in use.spawned)
+        or not listed
+        or description.ros2_control
+        or ros_version(Path(description.origin.file)) == 2
+        or any(map(drives_joints, description.plugins))
+        or any(each.code in _ABSENT for each in description.diagnostics)
+    ):
+        return
+    names = ", ".join(f'"{name}"' for name in use.spawned)
+    file = f"lib{ROS_CONTROL}.so"
+    yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
+        f'"{use.file.name}" starts the controllers {names}, but the description does not contain '
+        f'the plugin "{file}", which runs them, so no controller starts',
+        origin=listed[0].origin,
+        values={"hardware": "transmission", "plugin": file, "name": use.spawned[0]},
+        hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
+    )
 
 
 def _unloaded(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:

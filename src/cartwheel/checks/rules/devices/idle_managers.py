@@ -11,6 +11,7 @@ from cartwheel.checks.controller_claims import (
     has_standard_hardware,
     managers,
     offers,
+    other_layout,
     uncommanded,
 )
 from cartwheel.checks.controller_search import named_files
@@ -39,13 +40,19 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
         started = [
             each for each in controllers if not selected.names or each.name in selected.names
         ]
+        if any(commands_joints(each) for each in started):
+            continue
+        layouts = [
+            found
+            for tag in managers(robot, ros2=False)
+            if (found := other_layout(tag, selected.names, selected.loaded)) is not None
+        ]
         if (
             # Other findings are about such files.
             any(file.problem is not None for file in files)
             or not defined.issuperset(selected.names)
             or (not files and any(True for _ in named_files(robot)))
-            or any(commands_joints(each) for each in started)
-        ):
+        ) and not layouts:
             continue
         for ros2 in (True, False):
             if not has_standard_hardware(robot, ros2=ros2) or not offers(robot, ros2=ros2):
@@ -54,7 +61,7 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
                 if other_ros(robot.description, tag) or without_parameters(tag):
                     # Its controllers do not start anyway.
                     continue
-                found = uncommanded(tag, selected.launch, selected.names)
+                found = uncommanded(tag, selected.launch, selected.names, selected.loaded)
                 # The controllers may be in a package that uses this one.
                 yield found if selected.names else replace(found, severity="info")
 

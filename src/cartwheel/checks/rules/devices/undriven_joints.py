@@ -74,10 +74,14 @@ def _is_free(joint: Joint) -> bool:
 
 def may_drive(tag: PluginTag) -> bool:
     """Whether a plugin drives joints, or is unknown, so that it may."""
+    return not plugin_tags.is_simulated(tag) or drives_joints(tag)
+
+
+def drives_joints(tag: PluginTag) -> bool:
+    """Whether a plugin drives joints, or runs controllers, by its name if it is unknown."""
     plugin = plugin_named(tag.filename)
     return (
-        not plugin_tags.is_simulated(tag)
-        or (plugin is not None and issubclass(plugin, ControlPlugin))
+        (plugin is not None and issubclass(plugin, ControlPlugin))
         or "control" in short_name(tag.filename)
         or bool(plugin_tags.roles_with(tag.filename, "joint", "other_joint", *WHEEL_ROLES))
     )
