@@ -156,7 +156,7 @@ def test_a_launch_file_places_models_and_joints(package: Path) -> None:
         found = coded(world.diagnostics, ENTITY_UNKNOWN)
         assert sorted(str(each.values["name"]) for each in found) == ["absent", "nowhere"]
         (lost,) = coded(world.diagnostics, LAUNCH_VALUE_UNKNOWN)
-        assert (lost.values["name"], 'model "lost"' in lost.hint) == ("lost", True)
+        assert (lost.values["what"], lost.values["name"]) == ("model", "lost")
 
 
 CREATED = """

@@ -1,11 +1,13 @@
 """Reasons that are in the robot's files: `cartwheel check` reports those that `corpus` gives."""
 
 import pytest
-from tests.corpus.carts import cart, controlled, written
+from tests.corpus.carts import cart, controlled, plugin, written
 from tests.corpus.test_layouts import LAUNCH, TRANSMISSION, WHEEL
 
 import cartwheel
 from cartwheel.codes.devices import (
+    CONTROLLER_PARAMETER_INVALID,
+    CONTROLLER_PARAMETER_MISSING,
     CONTROLLERS_FILE_ARGUMENT,
     CONTROLLERS_FILE_MISMATCH,
     CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
@@ -13,6 +15,7 @@ from cartwheel.codes.devices import (
     HARDWARE_UNKNOWN,
     HARDWARE_WITHOUT_PLUGIN,
 )
+from cartwheel.codes.robot import INERTIA_MISSING, MASS_NOT_POSITIVE
 from cartwheel.corpus import try_robot
 
 MANAGER = "libgazebo_ros_control.so"
@@ -52,6 +55,8 @@ def kind(text):
         ),
         (ros2, ("ros__parameters", "parameters", 2), CONTROLLERS_FILE_MISMATCH),
         (ros2, ("0.05", "$(var radius)"), CONTROLLERS_FILE_ARGUMENT),
+        (ros2, ("0.05", "wide"), CONTROLLER_PARAMETER_INVALID),
+        (ros2, ("left_wheel_names", "left_wheels"), CONTROLLER_PARAMETER_MISSING),
         (ros1, ("", ""), CONTROLLERS_NOT_FOUND),
         (ros1, (f'{MANAGER}"/>', kind("gazebo_ros_control/Own")), HARDWARE_UNKNOWN),
         (ros1, (MANAGER, "libgazebo_ros_p3d.so"), HARDWARE_WITHOUT_PLUGIN),
@@ -89,3 +94,19 @@ def test_check_reports_files_that_ros_1_cannot_use(tmp_path, text, code):
     codes.add(CONTROLLERS_FILE_WITHOUT_CONTROLLERS)
     report = cartwheel.check(path, controllers=[tmp_path / "given.yaml"])
     assert [each.code for each in report.findings if each.code in codes] == [code] * bool(code)
+
+
+def test_check_reports_a_base_without_mass(tmp_path):
+    """Gazebo does not load a robot whose root link, with the links fixed to it, has no mass."""
+    text = cart().replace('<mass value="2"/>', '<mass value="0"/>')
+    path = written(tmp_path, text, plugin())
+    (fault,) = try_robot(path, standing=1.0).faults
+    assert fault.code is INERTIA_MISSING
+    found = [each for each in cartwheel.check(path).findings if each.code is MASS_NOT_POSITIVE]
+    assert [each.values["link"] for each in found] == ["base"]
+    held = text.replace(
+        '<link name="front">', '<link name="front"><inertial><mass value="1"/>'
+        '<inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/></inertial>'
+    )  # fmt: skip
+    codes = {each.code for each in cartwheel.check(written(tmp_path, held, plugin())).findings}
+    assert MASS_NOT_POSITIVE not in codes

@@ -17,9 +17,8 @@ from cartwheel.description.model import Element, PluginTag
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
-from cartwheel.dialects.ros_control.interfaces import COMMANDS, SYSTEMS, hardware_of
+from cartwheel.dialects.ros_control.interfaces import COMMANDS, PLAIN, SYSTEMS, hardware_of
 from cartwheel.dialects.ros_control.parameters import OWN, SIZES, Role, Row, rows
-from cartwheel.dialects.ros_control.sim_types import PLAIN
 from cartwheel.errors import Diagnostic, Severity, UnknownNameError
 
 _INTERFACES = {

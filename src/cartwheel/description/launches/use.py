@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 
-from cartwheel import yaml_text
 from cartwheel.description.files.package_folders import is_file, package_above, package_name
+from cartwheel.description.launches import variants
 from cartwheel.description.launches.bridging import BRIDGES, RenamedTopic, renamed_topics
 from cartwheel.description.launches.controllers import ControllerCommand, by_command, by_spawner
 from cartwheel.description.launches.effort import UNKNOWN, Effort
@@ -26,8 +26,7 @@ from cartwheel.description.launches.spawning import (
     split,
     world_in,
 )
-from cartwheel.description.launches.variants import SUFFIXES, below, beside
-from cartwheel.errors import CartwheelError, Diagnostic, Origin
+from cartwheel.errors import Diagnostic, Origin
 
 ABSENT = -1
 """The number of a description that was not found."""
@@ -42,25 +41,7 @@ _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
-_FIRST_KEY = re.compile(r"^( *)(?!---|[\s#%])", re.MULTILINE)
-"""The indentation of a YAML file's first key, which is that of all keys of the same mapping."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
-
-
-def _is_telling(file: Path) -> bool:
-    """Whether enough of a file's name is known that others with such a name may be meant."""
-    return re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")) is not None
-
-
-def _is_single(file: Path) -> bool:
-    """Whether a YAML file contains the parameters of a single controller."""
-    try:
-        text = yaml_text.read(file)
-    except (CartwheelError, OSError, UnicodeDecodeError):
-        return False
-    first = _FIRST_KEY.search(text)
-    indentation = "" if first is None else first[1]
-    return re.search(rf"^{indentation}[\"']?type[\"']?[ \t]*:", text, re.MULTILINE) is not None
 
 
 @dataclass(kw_only=True)
@@ -179,7 +160,7 @@ class Facts:
                 # argument, both values are unknown.
                 if value:
                     arguments[name] = UNKNOWN if ":=" in value else value
-            elif file is None and word.endswith(SUFFIXES):
+            elif file is None and word.endswith(variants.SUFFIXES):
                 file = Path(word)
         first = len(self.descriptions)
         number = self.add(file, arguments)
@@ -201,7 +182,7 @@ class Facts:
         if file is None:
             return None
         if UNKNOWN in str(file.parent):
-            if (found := below(file, UNKNOWN, self.file)) is None:
+            if (found := variants.below(file, UNKNOWN, self.file)) is None:
                 return ABSENT
             file = found
         number = len(self.descriptions)
@@ -209,9 +190,9 @@ class Facts:
             file = self.here(file)
             if is_file(file):
                 self.descriptions.append((file, dict(arguments)))
-        elif _is_telling(file):
+        elif variants.is_telling(file, UNKNOWN):
             known = {**arguments, "": UNKNOWN}
-            self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
+            self.descriptions += [(each, dict(known)) for each in variants.beside(file, UNKNOWN)]
         if len(self.descriptions) > number:
             return number
         self.absent[f'file "{file}"'.replace(UNKNOWN, "…")] = None
@@ -290,7 +271,10 @@ class Facts:
                 if spawn.file is not None:
                     described = self.add(spawn.file, {})
                 elif spawn.model:
-                    described = self._model(spawn.model)
+                    file = variants.model_in(self.home, spawn.model)
+                    described = ABSENT if file is None else self.add(file, {})
+                    if file is None:
+                        self.absent[f'model "{spawn.model}"'.replace(UNKNOWN, "…")] = None
                 self.spawns.append(replace(spawn, described=described))
             else:
                 self._begin(world_in(words))
@@ -302,21 +286,6 @@ class Facts:
             self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
             self._control(by_spawner(words, space))
-
-    def _model(self, name: str) -> int:
-        """Adds the SDF of a model that the package of the launch file contains.
-
-        Returns:
-            As for `add`.
-        """
-        self.effort.spend(_LOOK)
-        if self.home is not None and re.fullmatch(r"[\w.-]+", name):
-            for folder in (self.home / "models", self.home):
-                if is_file(file := folder / name / "model.sdf"):
-                    self.descriptions.append((file, {}))
-                    return len(self.descriptions) - 1
-        self.absent[f'model "{name}"'.replace(UNKNOWN, "…")] = None
-        return ABSENT
 
     def bridge(self, text: str) -> None:
         """Adds a configuration file of ros_gz_bridge if it exists."""
@@ -384,15 +353,12 @@ class Facts:
         """
         self.effort.spend(_LOOK)
         path = Path(text.strip())
-        if UNKNOWN in path.name and UNKNOWN not in str(path.parent) and _is_telling(path):
-            found = list(beside(path, UNKNOWN, _YAMLS))
-            if len(found) == 1:
-                (path,) = found
-                text = str(path)
+        if UNKNOWN in text and (meant := variants.only_beside(path, UNKNOWN, _YAMLS)) is not None:
+            path, text = meant, str(meant)
         if UNKNOWN not in text and path.suffix in _YAMLS and is_file(path):
             space = resolved(self.namespace if within is None else within, namespace.strip())
             name = namespace.strip("/ ").rpartition("/")[2]
-            if re.fullmatch(r"\w+", name) and _is_single(path):
+            if re.fullmatch(r"\w+", name) and variants.is_single(path):
                 path, space = Path(f"{name}={path}"), space.rpartition("/")[0]
             self.yamls.append((space, path))
             self.places.append((space if certain else UNKNOWN, path))

@@ -10,7 +10,7 @@ from typing import Literal
 
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST, MOST_RATIO
-from cartwheel.description.model import Element, RobotDescription
+from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.stopping import CONSEQUENCE, refused_interface, stops
 from cartwheel.dialects.tags import invalid
 from cartwheel.errors import Code, Diagnostic, Origin, Severity, Value
@@ -27,6 +27,9 @@ MANAGERS = {
 }
 """Hardware plugins of ros2_control that are simulated, and the Gazebo plugins that run them."""
 SYSTEMS = tuple(MANAGERS)
+PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
+"""Names of the only hardware in gazebo_ros_control."""
+_PACKAGE = "gazebo_ros_control/"
 _HARDWARE = {
     "PositionJointInterface": "position",
     "VelocityJointInterface": "velocity",
@@ -159,6 +162,27 @@ def hardware_of(system: Element) -> str:
     """Returns the hardware plugin of a ``<ros2_control>`` tag."""
     plugin = system.find("hardware/plugin")
     return plugin.text.strip() if plugin is not None else ""
+
+
+def is_plain(kind: str) -> bool:
+    """Whether a ``<robotSimType>`` is the hardware of gazebo_ros_control."""
+    return kind.rpartition("::")[2] in PLAIN
+
+
+def is_unknown(kind: str) -> bool:
+    """Whether gazebo_ros_control does not contain the ``<robotSimType>`` that names it."""
+    return kind.strip().startswith(_PACKAGE) and not is_plain(kind)
+
+
+def unknown_hardware(tag: PluginTag, kind: str) -> Diagnostic:
+    """The diagnostic for a plugin with unknown hardware."""
+    return devices.HARDWARE_UNKNOWN.diagnostic(
+        f'<robotSimType>: the package "gazebo_ros_control" does not contain "{kind.strip()}", so '
+        "DefaultRobotHWSim is used; Gazebo would start no controller",
+        severity="error",
+        origin=tag.origin,
+        values={"hardware": kind.strip(), "meant": PLAIN[0], "plugin": tag.filename},
+    )
 
 
 def package_system(hardware: str) -> str:

@@ -17,15 +17,17 @@ from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import (
     JointInterfaces,
+    is_plain,
+    is_unknown,
     no_joints,
     transmissions,
+    unknown_hardware,
     unknown_joints,
 )
 from cartwheel.dialects.ros_control.launched.names import ros1_entries
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.services import Ros1ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
-from cartwheel.dialects.ros_control.sim_types import is_plain, is_unknown, unknown_hardware
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import Origin
 from cartwheel.graph import is_name

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from cartwheel.checks.controller_claims import managers
+from cartwheel.checks.controller_claims import managers, severity_in
 from cartwheel.checks.controller_files import ControlFile, repeated_keys
 from cartwheel.checks.controller_search import named_files, resolved
 from cartwheel.checks.robot import Robot
@@ -17,7 +18,10 @@ from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.remappings import namespace_of
 from cartwheel.dialects.ros2_control.contents import without_controllers
+from cartwheel.dialects.ros_control.catalogue import find_type
 from cartwheel.dialects.ros_control.files import (
+    ControllerEntry,
+    controller_entries,
     for_robot,
     is_ros2,
     of_ros2,
@@ -26,8 +30,9 @@ from cartwheel.dialects.ros_control.files import (
     ros2_file,
 )
 from cartwheel.dialects.ros_control.launched.names import ros1_entries
+from cartwheel.dialects.ros_control.parameters import read_parameters_of
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
-from cartwheel.errors import Diagnostic, Origin, PluginError
+from cartwheel.errors import Diagnostic, Origin, PluginError, UnknownNameError
 
 
 @rule(devices_codes.CONTROLLERS_FILE_UNREADABLE)
@@ -82,6 +87,40 @@ def _unusable(
     spawned = subject.launch.spaces if subject.launch is not None else frozenset[str]()
     if found is not None and (not merged.elsewhere or spawned <= {""}):
         yield found
+    source = ", ".join(shown_path(path) for path, _ in contents)
+    yield from _invalid(subject, robot, controller_entries(merged, "", source), files)
+
+
+def _invalid(
+    subject: Subject,
+    robot: Robot,
+    entries: Sequence[ControllerEntry],
+    files: Sequence[ControlFile],
+) -> Iterator[Diagnostic]:
+    """Parameters for which controllers do not start, of those that a launch file starts."""
+    names = {name for owner, each in subject.launched if owner is robot for name in each.names}
+    for entry in entries:
+        if names and entry.name not in names:
+            continue
+        settings = entry.settings()
+        ros2 = any(file.is_ros2 for file in files)
+        try:
+            family = find_type(entry.type, ros2=ros2)
+            read_parameters_of(family.parameters, settings, ros2=ros2)
+        except UnknownNameError:
+            continue
+        except PluginError as error:
+            found = replace(error.diagnostic(), severity=severity_in(files[0]))
+            parameter = str(found.values.get("parameter", "")).replace(".", "/")
+            values = (
+                value
+                for file in files
+                for controller in file.controllers
+                if controller.name == entry.name
+                and (value := controller.value(parameter, controller.name)) is not None
+            )
+            value = next(values, None)
+            yield found if value is None else replace(found, origin=value.origin, mark=value.text)
 
 
 def _of_ros1(robot: Robot, files: Sequence[ControlFile]) -> Iterator[Diagnostic]:

@@ -22,10 +22,11 @@ from cartwheel.dialects.ros_control.interfaces import (
     MANAGERS,
     SYSTEMS,
     hardware_of,
+    is_unknown,
     loaded_by,
     package_system,
+    unknown_hardware,
 )
-from cartwheel.dialects.ros_control.sim_types import is_unknown, unknown_hardware
 from cartwheel.errors import Diagnostic, Origin
 
 _STATES = "joint_state"

@@ -36,7 +36,7 @@ _FOAM = 50.0
 
 @rule(robot_codes.MASS_NOT_POSITIVE)
 def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
-    held = in_fixed_groups(subject)
+    held = in_fixed_groups(subject) - _in_groups_without_mass(subject)
     for link, inertial in inertials(subject):
         place = nodes.child(inertial, "mass")
         mass = nodes.number(nodes.text_of(place, "value"))
@@ -53,6 +53,22 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
             ),
             hint="" if mass < 0 else "Set the mass in kg.",
         )
+
+
+def _in_groups_without_mass(subject: Subject) -> set[str]:
+    """The links of each group, connected by fixed joints, in which no mass is positive."""
+    heavy = {
+        nodes.name_of(link)
+        for link, inertial in inertials(subject)
+        if (nodes.number(nodes.text_of(nodes.child(inertial, "mass"), "value")) or 0) >= LIGHTEST
+    }
+    return {
+        name
+        for robot in subject.robots
+        for root, parts in robot.rigid_groups.items()
+        if root != "world" and heavy.isdisjoint(parts)
+        for name in parts
+    }
 
 
 @rule(robot_codes.CENTER_OF_MASS_OUTSIDE)
