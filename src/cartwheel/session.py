@@ -59,6 +59,8 @@ class Spawned:
     """Those that are loaded, but not started."""
     package_path: tuple[Path, ...] = ()
     """Folders to search for packages first."""
+    arguments: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    """Names of controllers, with the ROS arguments of their nodes."""
 
 
 class RobotPublisher(Protocol):
@@ -236,13 +238,13 @@ class Session:
                 namespace=namespace,
                 frame_prefix=frame_prefix,
             )
-        how = Spawned(chosen.files, chosen.names, chosen.idle, tuple(package_path))
-        self.spawned[spawned] = how
+        how = (chosen.files, chosen.names, chosen.idle, tuple(package_path), chosen.arguments)
+        self.spawned[spawned] = Spawned(*how)
         return spawned
 
     def _spawn(self, description: RobotDescription, controllers: Selection, **options: Any) -> str:
         files = self.shared.get(ControllerFiles)
-        files.offer(controllers.files, controllers.names, controllers.idle)
+        files.offer(controllers.files, controllers.names, controllers.idle, controllers.arguments)
         try:
             spawned = self.simulation.spawn(description, **options)
         finally:
@@ -273,7 +275,7 @@ class Session:
         if self._packages.add(description.origin.file, how.package_path):
             self.types.forget_missing()
         files = self.shared.get(ControllerFiles)
-        files.offer(how.controllers, how.controller_names, how.idle_controllers)
+        files.offer(how.controllers, how.controller_names, how.idle_controllers, how.arguments)
         try:
             resident = self.simulation.population.admit(
                 description, name, pose, namespace, frame_prefix
@@ -372,9 +374,7 @@ class Session:
         self.descriptions = self.states = None
 
     def _check(self, start: int) -> None:
-        if not self.strict:
-            return
-        for each in self.simulation.diagnostics[start:]:
+        for each in self.simulation.diagnostics[start:] if self.strict else ():
             if each.severity == "info" or each.code in self.simulation.faults.ignore:
                 continue
             error = CartwheelError(

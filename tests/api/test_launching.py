@@ -276,6 +276,29 @@ def test_topics_have_the_names_that_the_bridge_of_a_launch_file_gives(
 
 
 @pytest.mark.parametrize(
+    "words",
+    [
+        '"--controller-ros-args", "-r ~/commands:=/go --remap a:=b"',
+        '"--controller-ros-args=-r /good/commands:=/go"',
+        '"--controller-ros-args", "-r a:=b", "--controller-ros-args", "-r ~/commands:=/go"',
+    ],
+)
+def test_a_spawner_renames_topics_of_its_controller(package: Path, words: str) -> None:
+    file = package / "launch/slider.launch.py"
+    assert '["good"]' in STARTER
+    file.write_text(STARTER.replace('["good"]', f'["good", {words}]'))
+    with cw.launch(file) as world:
+        state = world.save()
+        world.publish("/go", data=[0.5])
+        world.run(1.0)
+        assert world.model("slider").joint("slide") == pytest.approx(0.5, abs=1e-3)
+        assert "/good/commands" not in {each.name for each in world.session.graph.topics()}
+        world.model("slider").delete()
+        world.restore(state)
+        assert "/go" in {each.name for each in world.session.graph.topics()}
+
+
+@pytest.mark.parametrize(
     "bridge",
     [
         '<ros_gz_bridge bridge_name="b" config_file="CONFIG"/>',
@@ -311,6 +334,28 @@ def test_another_world_and_arguments(package: Path) -> None:
         cw.launch(file, {"arena": "worlds/willow.world"}, strict=True)
     with raises(ARGUMENT_UNKNOWN):
         cw.launch(file, {"aerna": "mud"})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ("-r empty.sdf", "empty"),
+        ("-r -v4 shapes.sdf", "shapes"),
+        ("/usr/share/gz/worlds/empty.sdf", "empty"),
+        ("", "default"),
+    ],
+)
+def test_a_world_of_new_gazebo_has_its_name(package: Path, arguments: str, name: str) -> None:
+    file = package / "launch/gz.launch.xml"
+    file.write_text(
+        f"""<launch><include file="$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py">
+        <arg name="gz_args" value="{arguments}"/></include>
+        <node pkg="ros_gz_sim" exec="create" args="-file $(find-pkg-share carts)/urdf/gz.urdf"/>
+        </launch>"""
+    )
+    (package / "urdf/gz.urdf").write_text(GZ)
+    with cw.launch(file) as world:
+        assert world.session.simulation.engine.world.name == name
 
 
 def test_a_published_model_that_the_world_contains_is_not_spawned(package: Path) -> None:

@@ -267,7 +267,9 @@ def _world(
 ) -> WorldDescription:
     """The world that the launch file states; a bundled one, if there is none of that name.
 
-    A launch file that starts nothing but a world requires it.
+    A launch file that starts nothing but a world requires it. gz-sim's own ``empty.sdf`` and
+    ``shapes.sdf`` call their worlds ``empty`` and ``shapes``, while those of Gazebo Classic, as the
+    bundled ones, are all called ``default``.
     """
     stated = start.world or EMPTY
     try:
@@ -276,17 +278,18 @@ def _world(
         if error.code not in (codes.FILE_MISSING, codes.FILE_ON_NETWORK) or not start.models:
             raise
     name = Path(stated).stem
-    if name not in bundled_worlds():
-        name = EMPTY
-        found.append(
-            codes.LAUNCH_WORLD_ABSENT.diagnostic(
-                f'the world "{stated}" was not found, and the empty world is used',
-                origin=Origin(file=str(start.file)),
-                values={"name": stated},
-                hint=f"Pass a world: {WORLD.given('FILE')}.",
-            )
+    if name in bundled_worlds():
+        world = load_world(name)
+        return replace(world, name=name) if stated.endswith(".sdf") else world
+    found.append(
+        codes.LAUNCH_WORLD_ABSENT.diagnostic(
+            f'the world "{stated}" was not found, and the empty world is used',
+            origin=Origin(file=str(start.file)),
+            values={"name": stated},
+            hint=f"Pass a world: {WORLD.given('FILE')}.",
         )
-    return load_world(name)
+    )
+    return load_world(EMPTY)
 
 
 def _start(model: LaunchedModel, robot: RobotDescription) -> Start:

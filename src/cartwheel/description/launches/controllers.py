@@ -14,6 +14,8 @@ _MANAGERS = frozenset({"-c", "--controller-manager"})
 _MANAGER_SPACES = frozenset({"-n", "--namespace"})
 """Options of spawners that state the controller manager, or its namespace."""
 _FILES = frozenset({"-p", "--param-file"})
+_ROS_ARGUMENTS = "--controller-ros-args"
+"""Option of spawners with arguments of the controllers' nodes, which can be stated repeatedly."""
 _INACTIVE = frozenset({"--inactive", "--stopped", "--load-only"})
 """Options of spawners that only load controllers."""
 _SWITCHES = _INACTIVE | {
@@ -51,6 +53,8 @@ class ControllerCommand:
     """Whether it states that it does not start them, as ``--inactive`` does."""
     files: tuple[str, ...] = ()
     """Names of files with their parameters."""
+    arguments: tuple[str, ...] = ()
+    """ROS arguments of their nodes, such as ``-r from:=to``."""
 
 
 def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
@@ -63,10 +67,14 @@ def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
         return ControllerCommand(space="")
     names: list[str] = []
     files: list[str] = []
+    arguments: list[str] = []
     options = iter(words)
     for word in options:
         if word in _FILES:
             files += itertools.islice(options, 1)
+        elif word == _ROS_ARGUMENTS:
+            value = next(options, "")
+            arguments += value.split() if UNKNOWN not in value else ()
         elif word.startswith("-"):
             # Options with a value, such as --controller-manager /controller_manager.
             if word not in _SWITCHES:
@@ -80,6 +88,7 @@ def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
         started=known if starts else (),
         loaded=() if starts else known,
         files=tuple(files),
+        arguments=tuple(arguments),
     )
 
 

@@ -44,6 +44,9 @@ class LaunchUse:
     """Names of those that it loads, but does not start."""
     undecided: frozenset[str] = frozenset()
     """Those of them for which it may be a mistake: it does not state that they are inactive."""
+    node_arguments: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    """Names of controllers whose nodes it gives ROS arguments, such as ``-r from:=to``, with these.
+    """
     absent: tuple[Path, ...] = ()
     """YAML files that it loads and that do not exist."""
     unfound: tuple[Unfound, ...] = ()

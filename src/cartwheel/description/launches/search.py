@@ -175,6 +175,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 spawned=spawned,
                 loaded=only_loaded((name for _, name in facts.loaded), spawned),
                 undecided=frozenset(facts.undecided),
+                node_arguments=tuple(dict.fromkeys(each for _, each in facts.arguments)),
                 absent=tuple(facts.lost),
                 unfound=tuple(facts.unfound),
                 sought=tuple(dict.fromkeys(facts.sought)),

@@ -333,6 +333,7 @@ def _with_own_controllers(
             controllers=tuple(_own(mine, every, facts.yamls)),
             spawned=spawned,
             loaded=only_loaded(_own(mine, every, facts.loaded), spawned),
+            node_arguments=tuple(_own(mine, every, facts.arguments)),
         )
         made.append(replace(each, use=use))
     return tuple(made)

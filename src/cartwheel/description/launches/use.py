@@ -1,4 +1,7 @@
-"""What is collected while a launch file is read."""
+"""What is collected while a launch file is read.
+
+The file is long because all of it fills one object.
+"""
 
 from __future__ import annotations
 
@@ -83,6 +86,8 @@ class Facts:
     """Controllers that are started, with the namespaces of their managers."""
     loaded: list[tuple[str, str]] = field(default_factory=list)
     """Those that are loaded, but not started by the same command."""
+    arguments: list[tuple[str, tuple[str, tuple[str, ...]]]] = field(default_factory=list)
+    """The namespaces of managers, and the controllers whose nodes have ROS arguments, with them."""
     undecided: set[str] = field(default_factory=set)
     """Those of them whose command does not state that it does not start them."""
     simulated: bool = False
@@ -318,6 +323,9 @@ class Facts:
             self.spawned += ((command.space, name) for name in command.started)
             self.loaded += ((command.space, name) for name in command.loaded)
             self.undecided |= set(() if command.decided else command.loaded)
+            if command.arguments:
+                for name in (*command.started, *command.loaded):
+                    self.arguments.append((command.space, (name, command.arguments)))
             for each in command.files:
                 self.parameters(each, within=command.space)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -67,6 +67,8 @@ class ControllerFiles:
         """Names of the controllers to start, if the files contain all of them; empty: all."""
         self.idle: frozenset[str] = frozenset()
         """Names of controllers to load, but not to start."""
+        self.arguments: dict[str, tuple[str, ...]] = {}
+        """The ROS arguments of their nodes, by the name of the controller."""
         self.loaded: list[Controller] = []
         """Controllers that managers have loaded from files."""
         self.readings: Readings | None = None
@@ -78,20 +80,36 @@ class ControllerFiles:
         return [controller for controller in self.loaded if controller.running]
 
     def wanted(self, entries: Iterable[ControllerEntry]) -> list[ControllerEntry]:
-        """Returns the controllers among the files' entries that are started, or `idle`."""
-        listed = list(entries)
+        """Returns the controllers among the files' entries that are started, or `idle`.
+
+        Arguments of their nodes replace those in the files, as with ROS 2's spawner.
+        """
+        listed = [
+            replace(entry, remappings=remappings(self.arguments[entry.name]))
+            if entry.name in self.arguments
+            else entry
+            for entry in entries
+        ]
         if not self.names or not self.names <= {entry.name for entry in listed}:
             return listed
         return [entry for entry in listed if entry.name in self.names | self.idle]
 
-    def offer(self, paths: Iterable[Path], names: Iterable[str], idle: Iterable[str]) -> None:
+    def offer(
+        self,
+        paths: Iterable[Path],
+        names: Iterable[str],
+        idle: Iterable[str],
+        arguments: Iterable[tuple[str, tuple[str, ...]]],
+    ) -> None:
         """Sets what the next robot uses."""
         self.paths, self.names, self.idle = tuple(paths), frozenset(names), frozenset(idle)
+        self.arguments = dict(arguments)
 
     def withdraw(self) -> tuple[Path, ...]:
         """Clears what the robot did not use; returns the files that no controller manager took."""
         left = self.take()
         self.names = self.idle = frozenset()
+        self.arguments = {}
         return left
 
     def take(self) -> tuple[Path, ...]:

@@ -66,6 +66,8 @@ class Selection:
     """Names of the controllers that the launch file starts; empty: all."""
     idle: tuple[str, ...] = ()
     """Names of those that the launch file loads, but does not start."""
+    arguments: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    """Names of controllers, with the ROS arguments that the launch file gives to their nodes."""
     problems: tuple[Diagnostic, ...] = ()
     """Why files that the launch file loads for these controllers cannot be read, and which
     controllers are not started."""
@@ -96,7 +98,8 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     if found is None or not found.files:
         problems = (*unfound(starter), *undefined(robot, starter), *only_loaded(starter))
         idle = () if starter is None else as_named(starter.loaded, ())
-        found = Selection(files=(), names=(), idle=idle, problems=problems)
+        arguments = () if starter is None else starter.node_arguments
+        found = Selection(files=(), names=(), idle=idle, arguments=arguments, problems=problems)
     return replace(found, problems=(*found.problems, *unread(launches)))
 
 
@@ -177,6 +180,7 @@ def selection(
         files=files,
         names=names,
         idle=idle,
+        arguments=() if starting is None else starting.node_arguments,
         problems=problems,
         launch=None if starting is None else starting.file,
         loaded=() if starting is None else starting.controllers,
