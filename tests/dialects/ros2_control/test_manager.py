@@ -2,6 +2,7 @@
 
 import pytest
 import yaml
+from tests.coded import coded
 from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
 from tests.dialects.ros_control.arms import ros2_system as system
 
@@ -84,6 +85,25 @@ def test_what_the_files_name_is_listed_with_its_interfaces(arm):
     assert group.required_state_interfaces == ["beam_joint/position", "beam_joint/velocity"]
     assert reported.claimed_interfaces == []
     assert reported.required_state_interfaces == ["beam_joint/position", "beam_joint/velocity"]
+
+
+@pytest.mark.parametrize(
+    ("rate", "listed_rate", "published"),
+    # The manager updates 100 times a second, so that every third update is 33 1/3 Hz.
+    [(20, 20, 10), (100, 100, 50), (1000, 100, 50), (40, 33, 17), (0, 100, 50)],
+)
+def test_a_controller_with_a_rate_of_its_own(bench, rate, listed_rate, published):
+    body = beam("beam", "world") + system(ros2_joint("beam_joint"))
+    parameters = ros2_parameters(states=STATES | {"update_rate": rate}, group=GROUP)
+    made = bench(robot(body, ros2_plugin()), parameters)
+    messages = made.box("/joint_states")
+    made.world.run(0.5)
+    assert not coded(made.warnings, devices.CONTROLLER_PARAMETER_UNKNOWN)
+    assert {name: each.update_rate for name, each in listed(made).items()} == {
+        "states": listed_rate,
+        "group": 100,
+    }
+    assert len(messages.drain()) == pytest.approx(published, abs=1)
 
 
 def test_a_spawner_finds_what_runs_and_configures_and_activates_it(arm):

@@ -105,7 +105,9 @@ class Ros2ManagerServices(ManagerServices):
             name=controller.name,
             type=controller.type,
             state="active" if controller.running else "inactive",
-            update_rate=self._rate,
+            update_rate=round(1e9 / controller.interval_ns)
+            if controller.interval_ns
+            else self._rate,
             claimed_interfaces=commands if controller.running else [],
             required_command_interfaces=commands,
             required_state_interfaces=controller.state_interfaces(),

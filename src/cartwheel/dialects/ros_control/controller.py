@@ -73,6 +73,9 @@ class Controller(Component):
         """Messages that arrived early, with the indices of their receivers."""
         self.claims: dict[str, JointHardware] = {}
         """The claimed joints, by name."""
+        self.interval_ns = 0
+        """Time between two updates, ns; 0 for that of the controller manager."""
+        self._updated_ns: int | None = None
         self.interfaces: dict[str, str] = {}
         """The claimed interface of each joint."""
         self.references: list[Reference] = []
@@ -103,6 +106,7 @@ class Controller(Component):
 
     def begin(self, time_ns: int) -> None:
         """Starts the controller, and delivers the messages that arrived before."""
+        self._updated_ns = None
         self.start(time_ns)
         self.started = True
         early, self._early = self._early, []
@@ -134,6 +138,18 @@ class Controller(Component):
             time_ns: Simulation time.
             seconds: Time since the last update, s.
         """
+
+    def since_update(self, time_ns: int) -> float:
+        """Time since the last update of a controller with an interval of its own, s.
+
+        It is 0 if no update is due; otherwise, the caller updates the controller.
+        """
+        last = self._updated_ns
+        since = self.interval_ns if last is None else time_ns - last
+        if since < self.interval_ns:
+            return 0.0
+        self._updated_ns = time_ns
+        return since / 1e9
 
     def idle(self, time_ns: int) -> None:
         """Called instead of `update` while not running, to publish the status of the action."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -20,6 +21,9 @@ from cartwheel.dialects.ros_control.switching import (
 )
 from cartwheel.errors import Origin
 from cartwheel.graph import Publisher
+
+_ROUNDING = 1e-6
+"""Fraction of an update by which the number of updates in an interval may err."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +97,10 @@ class ControllerManager:
             raise wrong_state(name, "is already loaded")
         file = self.robot.plugin.part.description.origin.file
         family = find_type(type_name, ros2=self.robot.ros2, file=file)
+        interval = self._interval(settings) if self.robot.ros2 else 0
         controller = family(name, type_name.strip().replace("::", "/"), settings, self.robot)
         settings.ignore("type")
+        controller.interval_ns = interval
         unread = settings.unread()
         if unread:
             self.robot.plugin.warn(
@@ -108,6 +114,22 @@ class ControllerManager:
             self.sensed += controller.publishers
         self._order = update_order(self._controllers)
         return controller
+
+    def _interval(self, settings: Settings) -> int:
+        """The time between two updates of a controller, ns; 0 for that of the manager.
+
+        Each controller of ROS 2 has the parameter ``update_rate``, in Hz. It is not updated more
+        often, and 0 stands for the rate of the manager. Source: controller_interface.
+
+        Raises:
+            PluginError: The rate is negative.
+        """
+        rate = settings.number("update_rate", 0.0)
+        if rate < 0:
+            raise settings.invalid("update_rate", rate, "0 or positive")
+        own = self.robot.period_ns
+        updates = math.ceil(1e9 / (rate * own) - _ROUNDING) if rate else 1
+        return own * updates if updates > 1 else 0
 
     def load_entry(self, entry: ControllerEntry) -> Controller:
         """Creates a controller from a file; see `load`."""
@@ -241,11 +263,16 @@ class ControllerManager:
         for controller in self._order:
             if controller.running:
                 if time_ns >= controller.next_ns:
+                    since = seconds
+                    if controller.interval_ns:
+                        since = controller.since_update(time_ns)
+                        if not since:
+                            continue
                     if shared:
                         with self._shares.kept(controller):
-                            controller.update(time_ns, seconds)
+                            controller.update(time_ns, since)
                     else:
-                        controller.update(time_ns, seconds)
+                        controller.update(time_ns, since)
             else:
                 controller.idle(time_ns)
         if self.writes:
