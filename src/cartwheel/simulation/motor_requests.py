@@ -16,7 +16,7 @@ from cartwheel.description.solids import solid_of
 from cartwheel.errors import Origin, PluginError
 from cartwheel.geometry import Array, Pose
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
-from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.joint_servo import Efforts, ServoHandle
 from cartwheel.simulation.dynamics.velocity_motor import JointStop, MotorHandle
 from cartwheel.simulation.requests import Requests
 from cartwheel.world.entry import BodyDrive, Motor
@@ -96,6 +96,7 @@ class MotorRequests(Requests):
         max_effort: float | None,
         beyond: bool = False,
         yields: bool = False,
+        efforts: Efforts | None = None,
         origin: Origin | None = None,
     ) -> ServoHandle:
         """A joint drive with effort, velocity or position commands.
@@ -107,13 +108,15 @@ class MotorRequests(Requests):
             max_effort: N m or N; at most the joint's own limit.
             beyond: Whether positions and velocities may use more than the joint's limit.
             yields: See `velocity_motor`.
+            efforts: How efforts combine with those of another request, if the caller commands
+                nothing else; see `add_effort`.
             origin: Origin of the request, for errors.
         """
         self.joint(joint, origin=origin)
         made = Motor(joint=joint, mode="servo", max_effort=max_effort, beyond=beyond)
         motor = self._entry.motors.setdefault(joint, made)
         drives = motor.mode == "velocity"
-        handle = ServoHandle(self.name, motor, yields=yields)
+        handle = ServoHandle(self.name, motor, yields=yields, efforts=efforts)
         self._add_drive(handle, origin)
         if drives:
             self._share(motor, motor.max_effort)
@@ -126,6 +129,19 @@ class MotorRequests(Requests):
         task.asleep = task.reads_state = True
         handle.wake = partial(self._engine.wake, task)
         return handle
+
+    def add_effort(self, handle: ServoHandle, effort: float) -> None:
+        """Applies an effort in N m or N, in addition to that of another plugin on the same joint.
+
+        Args:
+            handle: A handle whose efforts are added.
+            effort: N m or N.
+        """
+        others = [each for each in self._servos(handle.motor.joint) if _are_added(handle, each)]
+        for each in others:
+            each.add(effort)
+        if not others:
+            handle.command_effort(effort)
 
     def _stop(self, joint: str) -> JointStop:
         """Stops the motors of a joint at its limits."""
@@ -158,7 +174,9 @@ class MotorRequests(Requests):
         drives = [*others, handle]
         for each in drives:
             each.rivalled = any(not one.yields for one in drives if one is not each)
-        rivals = [each for each in others if second or not each.yields]
+        rivals = [
+            each for each in others if (second or not each.yields) and not _are_added(handle, each)
+        ]
         if handle.yields or not rivals:
             return
         kinds = {type(each) for each in (*rivals, handle)}
@@ -339,6 +357,13 @@ class MotorRequests(Requests):
         gaps = np.concatenate(clouds) - centre
         radii = np.hypot(gaps[:, 0], gaps[:, 1])
         return max(0.0, float(-gaps[:, 2].min())), float(radii.max())
+
+
+def _are_added(one: MotorHandle | ServoHandle, other: MotorHandle | ServoHandle) -> bool:
+    """Whether the efforts of two handles are added, so that neither disturbs the other."""
+    if not (isinstance(one, ServoHandle) and isinstance(other, ServoHandle)):
+        return False
+    return {one.efforts, other.efforts} == {"set", "added"}
 
 
 def _repeats(handle: MotorHandle | ServoHandle) -> bool:

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from tests.coded import coded
 
 from cartwheel.codes import devices, running
 from cartwheel.errors import PluginError
@@ -129,6 +130,30 @@ def test_a_force_is_given_until_the_next(make):
     plugin = controller("apply-joint-force", "")
     _, velocity = run(make, plugin, 1.0, [(FORCE, 0.7)])
     assert velocity == pytest.approx(0.7 / INERTIA, rel=0.02)
+
+
+PID = controller("joint-position-controller", "<p_gain>0</p_gain><i_gain>0</i_gain>")
+BY_VELOCITY = controller("joint-controller", "")
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_force_is_added_to_that_of_a_pid_controller(make, order):
+    both = "".join((PID, controller("apply-joint-force", ""))[::order])
+    world = make.world(make.sdf(arm(both)), ground=None)
+    world.publish(FORCE, data=0.7)
+    world.run(1.0)
+    assert float(world.session.simulation.data.qvel[0]) == pytest.approx(0.7 / INERTIA, rel=0.02)
+    assert not coded(world, running.JOINT_DRIVEN_TWICE)
+    world.reset()
+    world.run(1.0)
+    assert float(world.session.simulation.data.qvel[0]) == 0.0
+
+
+def test_a_force_and_a_velocity_on_one_joint_are_reported(make):
+    """gz-sim ignores the velocities of a joint to which forces are applied."""
+    both = BY_VELOCITY + controller("apply-joint-force", "")
+    world = make.world(make.sdf(arm(both)), ground=None)
+    assert coded(world, running.JOINT_DRIVEN_TWICE)
 
 
 def test_the_topic_of_a_joint_in_a_nested_model_is_a_valid_name(make):

@@ -63,7 +63,13 @@ class Channel(Component):
             self._publisher = self.advertise(config.topic, _FLOAT)
             self._Float64 = message_class(_FLOAT)
         elif config.kind != "position" or config.gains is not None:
-            self._servo = part.servo(config.joint, max_effort=None, origin=origin)
+            by_effort = config.kind == "effort" or config.gains is not None
+            self._servo = part.servo(
+                config.joint,
+                max_effort=None,
+                efforts="set" if by_effort else None,
+                origin=origin,
+            )
         self._pid = Pid(config.gains) if config.gains is not None else None
         if self._pid is not None:
             part.tune(config.joint, self._pid)

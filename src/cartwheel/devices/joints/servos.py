@@ -55,7 +55,15 @@ class JointServos(Component):
         part, origin = self.part, self.origin
         self._config = config
         self._joints = [
-            (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
+            (
+                part.joint(name, origin=origin),
+                part.servo(
+                    name,
+                    max_effort=None,
+                    efforts=None if config.gains is None else "set",
+                    origin=origin,
+                ),
+            )
             for name in config.joints
         ]
         self._fastest = [
@@ -148,7 +156,8 @@ class JointForceConfig:
 
 
 class JointForce(Component):
-    """Applies the last commanded force or torque to a joint.
+    """Applies the last commanded force or torque to a joint, in addition to that of a PID
+    controller.
 
     Raises:
         UnknownNameError: The joint does not exist.
@@ -156,11 +165,14 @@ class JointForce(Component):
 
     def __init__(self, scope: Scope, config: JointForceConfig) -> None:
         super().__init__(scope)
-        self._servo = self.part.servo(config.joint, max_effort=None, origin=self.origin)
+        self._servo = self.part.servo(
+            config.joint, max_effort=None, efforts="added", origin=self.origin
+        )
         self.subscribe(config.topic, _FLOAT, self._on_command)
 
     def reset(self) -> None:
+        self.part.add_effort(self._servo, 0.0)
         self._servo.release()
 
     def _on_command(self, message: Any) -> None:
-        self._servo.command_effort(float(message.data))
+        self.part.add_effort(self._servo, float(message.data))

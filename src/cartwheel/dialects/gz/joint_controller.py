@@ -252,6 +252,7 @@ class ApplyJointForceParameters:
 class ApplyJointForce(Plugin[ApplyJointForceParameters]):
     """Applies the last commanded force or torque to a joint until the next command.
 
+    It is added to the force of a PID controller on the same joint, such as that of an autopilot.
     Commands are received on ``/model/<model>/joint/<joint>/cmd_force`` (Float64). A command is a
     torque in N m for a revolute joint, and a force in N for a prismatic joint. Original plugin:
     ``ApplyJointForce`` in gz-sim.

@@ -13,6 +13,8 @@ from cartwheel.world.entry import ROTOR, Motor, scoped
 
 _OBJ = mujoco.mjtObj
 Mode = Literal["idle", "effort", "velocity", "position"]
+Efforts = Literal["set", "added"]
+"""How a plugin that commands nothing but efforts combines them with those of another one."""
 _Command = tuple[Mode, tuple[float, float], float, float, float, float, float]
 """Mode, law, velocity of the rotor, target, its rate, maximum velocity and effort."""
 
@@ -68,13 +70,20 @@ class ServoHandle:
         "_applied", "_awake", "_bias", "_braking", "_commanded_again", "_ctrl", "_ends",
         "_fastest", "_first", "_grip", "_joint", "_joint_dof", "_law", "_limit", "_near",
         "_position", "_qpos", "_qvel", "_rate", "_rotor", "_step", "_strength", "_target",
-        "_tendon", "_turning", "alone", "id", "mode", "model_name", "motor", "period",
-        "rivalled", "shared", "wake", "yields",
+        "_tendon", "_turning", "added", "alone", "efforts", "id", "mode", "model_name", "motor",
+        "period", "rivalled", "shared", "wake", "yields",
     )  # fmt: skip
 
-    def __init__(self, model: str, motor: Motor, *, yields: bool = False) -> None:
+    def __init__(
+        self, model: str, motor: Motor, *, yields: bool = False, efforts: Efforts | None = None
+    ) -> None:
         self.model_name = model
         self.motor = motor
+        self.efforts = efforts
+        """How its efforts combine with those of another one; None if it commands more than efforts.
+        """
+        self.added = 0.0
+        """The effort that another plugin adds, N m or N; see `add`."""
         self.shared = False
         """Whether a drive plugin also drives the joint."""
         self.alone = True
@@ -171,10 +180,15 @@ class ServoHandle:
         """
         if self._applied == "effort" and damping == self._law[1]:
             self._law = (effort, damping)
-            self._ctrl[self.id] = effort
+            self._ctrl[self.id] = effort + self.added
             self._qvel[self._rotor] = 0.0
         else:
             self._give("effort", effort, damping)
+
+    def add(self, effort: float) -> None:
+        """Adds an effort in N m or N to all that are commanded, until the next call."""
+        self.added = effort
+        self._apply()
 
     def command_velocity(self, velocity: float) -> None:
         """Holds a velocity in rad/s or m/s, but stops at the joint's limits."""
@@ -264,7 +278,7 @@ class ServoHandle:
 
     def _apply(self) -> None:
         effort, damping = self._law
-        self._ctrl[self.id] = effort
+        self._ctrl[self.id] = effort + self.added
         self._bias[2] = -damping
         holds = self.mode in ("velocity", "position")
         if holds:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 from cartwheel.checks import plugin_tags
 from cartwheel.checks.controller_claims import claims, has_standard_hardware, managers, offers
@@ -12,7 +13,8 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import running
-from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.description.model import PluginTag
+from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.selection import launched
 from cartwheel.dialects.tag_roles import DRIVEN_ROLES
 from cartwheel.errors import Diagnostic, Origin
@@ -30,6 +32,8 @@ class _Driver:
     origin: Origin
     shares: bool = False
     """Whether only one of all such drivers acts at a time."""
+    efforts: Literal["set", "added"] | None = None
+    """How it combines its efforts with those of another driver; None if it commands more."""
 
 
 @rule(running.JOINT_DRIVEN_TWICE)
@@ -45,6 +49,8 @@ def joint_driven_twice(subject: Subject) -> Iterator[Diagnostic]:
         pairs: dict[tuple[_Driver, _Driver], list[str]] = {}
         for joint, (first, *others) in drivers.items():
             for other in others:
+                if {first.efforts, other.efforts} == {"set", "added"}:
+                    continue
                 pairs.setdefault((first, other), []).append(joint)
         for (first, other), joints in pairs.items():
             yield running.JOINT_DRIVEN_TWICE.diagnostic(
@@ -67,8 +73,27 @@ def _plugins(robot: Robot) -> Iterator[tuple[str, _Driver]]:
             if role.role in DRIVEN_ROLES
             for name in role.joints(tag.element)
         )
-        driver = _Driver(f'plugin "{tag.filename}"', tag.origin)
+        driver = _Driver(f'plugin "{tag.filename}"', tag.origin, efforts=_efforts(tag))
         yield from ((name, driver) for name in names if name in robot.joints)
+
+
+def _efforts(tag: PluginTag) -> Literal["set", "added"] | None:
+    """How gz-sim combines the efforts of a plugin with those of another one.
+
+    A PID controller sets the effort of its joint, and ApplyJointForce adds to it.
+    """
+    name = short_name(tag.filename)
+    if name == "gz-sim-apply-joint-force-system":
+        return "added"
+    if name == "gz-sim-joint-position-controller-system":
+        return None if _is_on(tag, "use_velocity_commands") else "set"
+    by_force = name == "gz-sim-joint-controller-system" and _is_on(tag, "use_force_commands")
+    return "set" if by_force else None
+
+
+def _is_on(tag: PluginTag, name: str) -> bool:
+    found = tag.element.find(name)
+    return found is not None and found.text.strip().lower() in ("1", "true")
 
 
 def _managers(robot: Robot) -> Iterator[tuple[str, _Driver]]:
