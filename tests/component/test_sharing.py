@@ -153,3 +153,20 @@ def test_strict_refuses_the_second_robot() -> None:
         world.spawn(CART, name="left")
         world.spawn(CART, name="right", y=2.0)
         assert found(world) == []
+
+
+def test_topics_of_the_world_are_common_to_its_models() -> None:
+    hull = (
+        '<model name="{name}"><pose>0 {y} 1 0 0 0</pose><link name="hull"><inertial><mass>1</mass>'
+        '</inertial></link><plugin name="water" filename="gz-sim-hydrodynamics-system">'
+        "<link_name>hull</link_name></plugin></model>"
+    )
+    sea = (
+        '<sdf version="1.9"><world name="sea"><gravity>0 0 0</gravity>'
+        '<plugin name="pushes" filename="gz-sim-apply-link-wrench-system"/>'
+        f"{hull.format(name='one', y=0)}{hull.format(name='two', y=5)}</world></sdf>"
+    )
+    with cw.World(sea) as world:
+        topics = {each.name for each in world.session.graph.topics()}
+        assert {"/ocean_current", "/world/sea/wrench"} <= topics
+        assert found(world) == []

@@ -169,7 +169,8 @@ class Component:
             name, kind, node=self.node, rate=rate, qos=qos, checked=self._foreign
         )
         self.publishers.append(publisher)
-        self.part.published.add(publisher.topic)
+        if not self.scope.common:
+            self.part.published.add(publisher.topic)
         return self.keep(publisher)
 
     def subscribe(
@@ -188,7 +189,8 @@ class Component:
         checked = self.checked(callback, unset=unset)
         name, kind, receiver = self.scope.subscribed(topic, self._named(type_name), checked)
         subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
-        self.part.subscribed.add(subscription.topic)
+        if not self.scope.common:
+            self.part.subscribed.add(subscription.topic)
         owner = self.scope.owner
         if owner is not None:
             subscription.on_error = lambda _, error: self.part.fail(owner, error)

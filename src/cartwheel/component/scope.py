@@ -66,6 +66,8 @@ class Scope:
     """Name of the inputs for manual joint positions; empty: the node name."""
     owner: object | None = None
     """The plugin that fails if a callback raises an exception; None: the simulation reports it."""
+    common: bool = False
+    """Whether its topics are those of the world, so that the components of all models use them."""
     holder: Component | None = field(default=None, init=False)
     """The first component of the scope. It holds the resources of the others, even if one of them
     cannot be created completely."""

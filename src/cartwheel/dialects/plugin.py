@@ -116,6 +116,7 @@ class Plugin(Component, Generic[C]):
             node=f"{part.name}/{node}",
             title=f'{what} model "{part.name}"',
             origin=tag.origin,
+            common=True,
         )
 
     def _scope(self, part: Part, shared: Shared, tag: PluginTag) -> TagScope:

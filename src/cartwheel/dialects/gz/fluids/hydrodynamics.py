@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar, TypeVar
 
@@ -134,9 +134,11 @@ class HydrodynamicsSystem(Plugin[HydrodynamicsParameters]):
         stated = _stated_mass(link)
         namespace = config.namespace.strip()
         topic = f"model/{namespace}/ocean_current" if namespace else "ocean_current"
+        # Without a namespace, all models are in the same current.
+        scope = self.scope if namespace else replace(self.scope, common=True)
         self.add(
             Hydrodynamics(
-                self.scope,
+                scope,
                 HydrodynamicsConfig(
                     link=config.link.strip(),
                     linear=self._matrix(""),
