@@ -70,6 +70,28 @@ def test_models_that_plugins_move_are_found(tmp_path):
     assert survey(file).in_worlds == found.in_worlds
 
 
+def test_included_models_that_the_world_moves_are_robots(tmp_path):
+    text = cart("bare").replace("<plugin", "<!--").replace("</plugin>", "-->")
+    (tmp_path / "models/bare").mkdir(parents=True)
+    (tmp_path / "models/bare/model.sdf").write_text(f'<sdf version="1.9">{text}</sdf>')
+    plugin = PLUGIN.format(name="{name}", apart=0.2, file="gz-sim-diff-drive-system")
+    include = "<include>{more}<uri>model://bare</uri>{plugin}</include>"
+    file = world(
+        tmp_path,
+        include.format(more="<name>one</name>", plugin=plugin.format(name="one")),
+        include.format(more="<pose>9 9 0 0 0 0</pose>", plugin=plugin.format(name="two")),
+        include.format(more="<name>still</name><static>1</static>", plugin=plugin),
+        include.format(more="<name>other</name>", plugin=""),
+        name="worlds/yard.sdf",
+    )
+    found = survey(tmp_path, package_path=[tmp_path / "models"])
+    assert found.in_worlds == ((file, "one"), (file, "bare"))
+    verdict = try_robot(file, model="one", package_path=[tmp_path / "models"])
+    (drive,) = verdict.drives
+    assert drive.topic == "/one/cmd_vel"
+    assert WHEEL_SEPARATION_MISMATCH in {each.reason.code for each in verdict.faults if each.reason}
+
+
 def test_worlds_without_robots_and_unreadable_files_have_none(tmp_path):
     world(tmp_path, CRATE.format("gz-sim-pose-publisher-system"))
     (tmp_path / "torn.sdf").write_text('<sdf><world name="w"><model name="m"><plugin')

@@ -14,7 +14,7 @@ from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.loading import open_description
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import DescriptionError, Origin, UnknownNameError
+from cartwheel.errors import CartwheelError, DescriptionError, Origin, UnknownNameError
 from cartwheel.geometry import Pose
 
 _SUFFIXES = (".world", ".sdf", ".xacro")
@@ -27,7 +27,10 @@ _STEEPEST = 0.6
 
 
 def robots_in_worlds(folder: Path, package_path: Sequence[Path] = ()) -> Iterator[tuple[Path, str]]:
-    """World files with the names of their models that plugins move, without included models.
+    """World files with the names of their models that plugins move.
+
+    Included models count if the world adds a plugin to them that moves them. Others are tested by
+    their own files.
 
     Args:
         folder: A folder, which is searched with its subfolders, or a world.
@@ -67,6 +70,7 @@ def load_from_world(
         if each.origin.file == start.file and each.origin.line > start.line
     ]
     end = min(after, default=None)
+    plugins = {_place(each.origin) for tag in robot.plugins for each in tag.element.walk()}
     named = {
         Path(element.text.strip()).name
         for tag in robot.plugins
@@ -76,6 +80,9 @@ def load_from_world(
     def is_inside(origin: Origin | None) -> bool:
         if origin is None:
             return False
+        if _place(origin) in plugins:
+            # The world may add plugins to a model that it includes.
+            return True
         if origin.file != start.file:
             # A controller file may be in a folder other than the stated one.
             return Path(origin.file).name in named
@@ -109,7 +116,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 def _robots(path: Path, package_path: Sequence[Path]) -> list[str]:
     text = text_of(path)
-    if "<world" not in text or "<plugin" not in text or "<model" not in text:
+    if any(each not in text for each in ("<world", "<plugin")):
         return []
     try:
         root = open_description(path, {}, package_path).root
@@ -117,7 +124,34 @@ def _robots(path: Path, package_path: Sequence[Path]) -> list[str]:
         return []
     worlds = root.all("world") if root.tag in ("sdf", "gazebo") else []
     found = [name for world in worlds for model in world.all("model") if (name := _robot(model))]
+    added = {
+        _place(plugin.origin)
+        for world in worlds
+        for include in world.all("include")
+        for plugin in include.all("plugin")
+        if is_mover(plugin.get("filename") or "")
+    }
+    if added:
+        found += _included(path, added, package_path)
     return list(dict.fromkeys(found))[:_MOST]
+
+
+def _included(
+    path: Path, added: Set[tuple[str, int]], package_path: Sequence[Path]
+) -> Iterator[str]:
+    """The names of the models to which a world adds plugins at these places."""
+    try:
+        world = load_world(path, package_path=package_path)
+    except CartwheelError:
+        return
+    for model in world.models:
+        places = {_place(tag.origin) for tag in model.plugins}
+        if not model.static and not places.isdisjoint(added):
+            yield model.name
+
+
+def _place(origin: Origin) -> tuple[str, int]:
+    return origin.file, origin.line
 
 
 def _robot(model: Node) -> str:
