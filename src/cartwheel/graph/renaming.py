@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +15,10 @@ from cartwheel.similar_names import suggestion
 CLOCK = "rosgraph_msgs/msg/Clock"
 IMAGES = ("/compressed", "/compressedDepth")
 """Subtopics of an image."""
+_OF_WORLD = re.compile(
+    r"/stats|/world/[^/]+/(?:stats|state|(?:dynamic_)?pose/info|scene/(?:info|deletion))"
+)
+"""Topics that gz-sim publishes itself about each world."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -85,7 +90,11 @@ class TopicRenaming:
             own = self._asked.get(entry.gz)
             if own is None and entry.gz not in topics and entry.type != CLOCK:
                 message = f'no plugin uses the topic "{entry.gz}", so {entry.ros} has no effect'
-                yield _warning(entry, message, suggestion(entry.gz, sorted(self._asked)))
+                hint = suggestion(entry.gz, sorted(self._asked))
+                if _OF_WORLD.fullmatch(entry.gz):
+                    message = f'Cartwheel does not publish the topic "{entry.gz}" of gz-sim, so '
+                    message, hint = f"{message}{entry.ros} has no effect", ""
+                yield _warning(entry, message, hint)
             elif own is not None and own != entry.type and _inside(entry.type, own) is None:
                 yield _warning(entry, f"{entry.ros} must have the type {own} (got {entry.type})")
 

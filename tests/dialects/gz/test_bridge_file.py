@@ -108,6 +108,25 @@ def test_what_has_no_effect_is_reported(bridged):
     ]
 
 
+@pytest.mark.wording
+@pytest.mark.parametrize(
+    ("topic", "who"),
+    [
+        ("/world/default/dynamic_pose/info", "Cartwheel does not publish"),
+        ("/world/other/pose/info", "Cartwheel does not publish"),
+        ("/model/cat/pose", "no plugin uses"),
+    ],
+)
+def test_topics_that_gz_itself_publishes(bridged, topic, who):
+    world = bridged(
+        f"- {{ros_topic_name: /poses, gz_topic_name: {topic}, "
+        "ros_type_name: tf2_msgs/msg/TFMessage}",
+        cart(),
+    )
+    (found,) = reported(world)
+    assert found.startswith(f'{who} the topic "{topic}"')
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [
