@@ -137,6 +137,32 @@ def test_a_sphere_of_the_body_beside_the_wheels_is_a_caster(tmp_path, z, mu, rep
     assert [each.values["link"] for each in findings] == ["base"] * reported
 
 
+@pytest.mark.parametrize(
+    ("dynamics", "reported"),
+    [
+        # The wheel carries half of the weight of 6.7 kg, with a grip of 33 N. At 0.02 m/s, the
+        # damping d brakes it by 2 d N, as its radius is 0.1 m.
+        ('damping="14"', False),
+        ('damping="20"', True),
+        ('friction="3"', False),
+        ('friction="3.6"', True),
+        ('damping="10" friction="2"', True),
+    ],
+)
+def test_a_wheel_on_a_swivel_that_the_ground_cannot_turn_is_reported(tmp_path, dynamics, reported):
+    swivel = FORK.format(name="fork", place="0.2 0 0", rpy="0 0 0", axis="0 0 1")
+    caster = WHEEL.format(name="front", parent="fork", place="0 0 0").replace(
+        '<axis xyz="0 1 0"/>', f'<axis xyz="0 1 0"/><dynamics {dynamics}/>'
+    )
+    findings = found(
+        tmp_path, BODY.format(more="") + REAR + DRIVE + swivel + caster, CASTER_FRICTION
+    )
+    assert [each.values["link"] for each in findings] == ["front"] * reported
+    for each in findings:
+        assert each.severity == "warning"
+        assert 0.0 < each.values["ratio"] < 0.95
+
+
 MOVE = '<gazebo><plugin name="move" filename="libgazebo_ros_planar_move.so"/></gazebo>'
 
 

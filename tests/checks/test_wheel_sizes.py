@@ -569,6 +569,24 @@ def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tm
 
 
 @pytest.mark.wording
+@pytest.mark.parametrize(("times", "added"), [(1.0, ""), (0.5, " of its wheels")])
+def test_wheels_that_slide_and_have_a_wrong_size(bench, tmp_path, times, added):
+    path = tmp_path / "car.yaml"
+    text = SKID_CONTROLLER.replace(f"radius: {RADIUS}", f"radius: {times * RADIUS}")
+    path.write_text(f"{text}    wheel_separation: {TRACK}\n")
+    (finding,) = [
+        each
+        for each in bench.report(car(), controller_files=[path]).findings
+        if each.code is SKID_STEERING
+    ]
+    slow = TRACK**2 / (TRACK**2 + BASE**2)
+    assert f"turns at {slow:.0%} of the commanded rate" in finding.message
+    assert (f", and at {slow / times:.0%} with the wrong radius{added}" in finding.message) == bool(
+        added
+    )
+
+
+@pytest.mark.wording
 @pytest.mark.parametrize("stated", [(TRACK, None), (TRACK, 0.75), (None, 0.75), (None, 5.0)])
 def test_each_parameter_of_a_controller_in_the_advice_compensates_for_wheels_that_slide(
     bench, tmp_path, stated

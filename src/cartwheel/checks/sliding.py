@@ -39,6 +39,10 @@ _NEAR = 0.006
 """Maximum difference in height between parts that touch the ground, m."""
 _ALONG = 0.1
 """Smallest component of a direction in which a coefficient limits the friction."""
+_LOCKED = 0.02
+"""Speed at which the ground must be able to turn a braked wheel, m/s, which slides otherwise."""
+_UPRIGHT = 0.9
+"""Smallest vertical component of the axis of a swivel."""
 _UP = np.array([0.0, 0.0, 1.0])
 _GRAVITY = 9.8
 """m/s²."""
@@ -306,6 +310,58 @@ def braking(robot: Robot, driven: Sequence[Joint]) -> Braking | None:
     )
 
 
+def locked_swivels(robot: Robot, driven: Sequence[Joint]) -> tuple[Joint, ...]:
+    """The joints of wheels on swivels whose damping and friction the ground cannot overcome.
+
+    Such a wheel points in the direction in which the base moves, and slides instead of rolling.
+
+    Args:
+        robot: The robot.
+        driven: Joints of the driven wheels.
+    """
+    wheels = {name for joint in driven for name in wheel_links(robot, joint)}
+    bottoms = [lowest(robot, *wheel_links(robot, joint)) for joint in driven]
+    known = [each for each in bottoms if each is not None]
+    center = center_of_mass(robot.description, starting_poses(robot))
+    if not known or center is None or not robot.placed.issuperset(wheels):
+        return ()
+    touching = _touching(robot, min(known)) - wheels
+    swivels = [
+        joint
+        for joint in robot.description.joints
+        if joint.child in touching and _is_on_swivel(robot, joint, driven[0])
+    ]
+    if not any(joint.axis.damping or joint.axis.friction for joint in swivels):
+        return ()
+    axle = wheel_axis(robot, driven[0])
+    places = [wheel_tread(robot, joint) for joint in (*driven, *swivels)]
+    x = np.array([_ahead(axle, each) for each in places])
+    y = np.array([float(axle @ each) for each in places])
+    loads = _loads(x, y, (_ahead(axle, center), float(axle @ center)))[len(driven) :]
+    found = []
+    for joint, load in zip(swivels, loads, strict=True):
+        radius, axis = wheel_radius(robot, joint) or 1.0, joint.axis
+        grip = max(_coefficients(robot, joint.child)) * load * robot.description.mass * _GRAVITY
+        # The force with which the ground must turn the wheel at this speed.
+        if axis.friction / radius + axis.damping * _LOCKED / radius**2 > grip:
+            found.append(joint)
+    return tuple(found)
+
+
+def _is_on_swivel(robot: Robot, joint: Joint, driven: Joint) -> bool:
+    """Whether a joint without a motor holds a wheel below a swivel of the base without a motor."""
+    swivel = robot.inbound.get(robot.rigid_root(joint.parent))
+    if swivel is None or not (joint.turns and swivel.turns):
+        return False
+    return (
+        {joint.name, swivel.name}.isdisjoint(robot.driven - robot.idle)
+        and robot.rigid_root(swivel.parent) == robot.rigid_root(driven.parent)
+        and abs(wheel_axis(robot, swivel)[2]) > _UPRIGHT
+        and abs(wheel_axis(robot, joint)[2]) < 1.0 - _UPRIGHT
+        and wheel_radius(robot, joint) is not None
+    )
+
+
 def is_held(robot: Robot, driven: Sequence[Joint]) -> bool:
     """Whether the friction of parts that slide exceeds the force of all motors together.
 
@@ -348,12 +404,13 @@ def _others(
     """The other parts that touch the ground. `slips` is as for `turn_ratio`."""
     base = robot.rigid_root(driven[0].parent)
     touching = _touching(robot, bottom)
+    locked = {joint.child for joint in locked_swivels(robot, driven)}
     for link in robot.description.links:
         if link.name in wheels or link.name not in touching:
             continue
         holder = robot.inbound.get(link.name)
         rolls = holder is not None and rolls_only_forward(robot, holder, driven)
-        fixed = robot.rigid_root(link.name) == base
+        fixed = robot.rigid_root(link.name) == base or link.name in locked
         place = Surfaces(robot, [link.name]).lowest(_UP)
         if place is None:
             continue

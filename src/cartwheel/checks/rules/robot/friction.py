@@ -7,7 +7,13 @@ from collections.abc import Iterator
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
-from cartwheel.checks.sliding import Dragged, dragged_turn, is_held, rolls_only_forward
+from cartwheel.checks.sliding import (
+    Dragged,
+    dragged_turn,
+    is_held,
+    locked_swivels,
+    rolls_only_forward,
+)
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
     ROUND,
@@ -25,7 +31,7 @@ from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.classic.drives.planar_move import PlanarMove
 from cartwheel.dialects.makers.force_based_move import ForceBasedMove
 from cartwheel.dialects.makers.planar_force_move import PlanarForceMove
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, Value
 
 SLIPPERY = 0.01
 _LEVEL = 0.006
@@ -92,6 +98,30 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 instead=f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>',
                 hint="Add these tags to the robot, or change the existing values.",
             )
+        for joint in locked_swivels(robot, driven):
+            mu = robot.links[joint.child].collisions[0].surface.mu1
+            brakes = " and ".join(
+                f"{name} of {value:g}"
+                for name, value in (
+                    ("damping", joint.axis.damping),
+                    ("friction", joint.axis.friction),
+                )
+                if value
+            )
+            yield robot_codes.CASTER_FRICTION.diagnostic(
+                message=f'the wheel "{joint.child}" on a swivel cannot roll, because the ground '
+                f'cannot overcome the {brakes} of joint "{joint.name}", so it slides with the '
+                f"friction coefficient {_shown(mu)}",
+                severity="warning",
+                values={
+                    "link": joint.child,
+                    "friction": mu,
+                    "holds": False,
+                    **_turn_values(turn),
+                },
+                origin=joint.origin,
+                hint="Decrease the damping and friction of this joint.",
+            )
         for link, collision in _fixed_balls(robot, wheels):
             alone = link.name != robot.rigid_root(link.name) and len(link.collisions) == 1
             own = (
@@ -132,17 +162,17 @@ def _braking(
     yield robot_codes.CASTER_FRICTION.diagnostic(
         message=f"{problem}, and its friction coefficient is {_shown(mu)}{_STUCK if holds else ''}",
         severity="warning" if holds else None,
-        values={
-            "link": link.name,
-            "friction": mu,
-            "holds": holds,
-            "ratio": None if turn is None else turn.turn,
-            **({"slip": True} if turn is not None and turn.slips else {}),
-        },
+        values={"link": link.name, "friction": mu, "holds": holds, **_turn_values(turn)},
         origin=collision.origin,
         instead="" if in_sdf else instead,
         hint=_IN_SDF if in_sdf else hint,
     )
+
+
+def _turn_values(turn: Dragged | None) -> dict[str, Value]:
+    """How a base turns that drags parts, as values of a diagnostic."""
+    values: dict[str, Value] = {"ratio": None if turn is None else turn.turn}
+    return values | ({"slip": True} if turn is not None and turn.slips else {})
 
 
 @rule(robot_codes.PLANAR_FRICTION)

@@ -83,21 +83,32 @@ def _with_wrong_wheels(
         ratio: The turn rate relative to the commanded one, with the right size of the wheels.
         sizes: All stated sizes.
     """
+    factor, measure = _wrong_wheels(one, sizes)
+    if not measure:
+        return found
+    turns = ratio * factor
+    more = "more" if turns > 1 else "less"
+    return replace(
+        found,
+        message=f"{found.message}, and {abs(turns - 1):.0%} {more} with the wrong {measure} of its "
+        "wheels",
+        values={**found.values, "turns": turns},
+    )
+
+
+def _wrong_wheels(one: Stated, sizes: Sequence[Stated]) -> tuple[float, str]:
+    """Factor of the turn rate by a wrong size of the wheels of a separation, and its measure.
+
+    The measure is empty if the size is right.
+    """
     wheels = {*one.first, *one.second}
     for other in sizes:
         if other.robot is not one.robot or wheels.isdisjoint(other.first) or not other.used:
             continue
         real = wrong_size(other)
         if real is not None:
-            turns = ratio * real / other.used
-            more = "more" if turns > 1 else "less"
-            return replace(
-                found,
-                message=f"{found.message}, and {abs(turns - 1):.0%} {more} with the wrong "
-                f"{other.measure} of its wheels",
-                values={**found.values, "turns": turns},
-            )
-    return found
+            return real / other.used, other.measure
+    return 1.0, ""
 
 
 def _widest(one: Stated, track: float) -> float:
@@ -135,6 +146,9 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
             continue
         least = turn_ratio(one.robot, left, right, axle, one.used / 2, outer=True)
         message = f"the wheels slide when the robot turns, {_effect(one, ratio)}"
+        factor, measure = _wrong_wheels(one, sizes)
+        if measure:
+            message += f", and at {ratio * factor:.0%} with the wrong {measure} of its wheels"
         if slipping is not None:
             message += UNKNOWN_SLIP
             if turns:
