@@ -252,3 +252,9 @@ MIMIC_OUT_OF_LIMITS = Code(
 START_OUTSIDE_LIMITS = Code(
     "CW258", "start-outside-limits", "info", "a joint starts outside its limits"
 )
+SINKS_IN_WATER = Code(
+    "CW259",
+    "sinks-in-water",
+    "warning",
+    "a vehicle in water is much heavier than the water that it displaces",
+)

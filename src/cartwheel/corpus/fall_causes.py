@@ -85,6 +85,8 @@ def cause_of_fall(
             None if one does or none is needed.
         wheel: See `lost_wheel`.
     """
+    if stand.floats:
+        return coded(found, frozenset({robot.SINKS_IN_WATER}))
     lost = next((each for each in found if is_body_lost(each, description)), None)
     if lost is not None or wheel is not None:
         return lost or wheel

@@ -11,11 +11,12 @@ from cartwheel.checks.gains import following_gain, span
 from cartwheel.checks.resting import starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
-from cartwheel.corpus.flying.thrusters import has_thrusters, is_in_space
+from cartwheel.corpus.flying.thrusters import is_in_space
 from cartwheel.corpus.loads import held_by, resistance
 from cartwheel.corpus.verdict import SHORT, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.sinking import is_in_water, sinking_load
 from cartwheel.geometry import Pose, rotate
 from cartwheel.graph import JointInput
 from cartwheel.simulation.clock import NANOSECONDS
@@ -60,7 +61,8 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
         speed=math.dist(before.position, after.position),
         turn=_turned(before, after),
         size=Robot(description, None).size,
-        floats=has_thrusters(description) or is_in_space(description),
+        floats=is_in_water(description) or is_in_space(description),
+        heavy=sinking_load(description) is not None,
         settled=_settled(description, start, after),
     )
 

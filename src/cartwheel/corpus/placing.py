@@ -8,23 +8,24 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.api import Model, World
-from cartwheel.corpus.flying.thrusters import has_thrusters, is_in_space
+from cartwheel.corpus.flying.thrusters import is_in_space
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.solids import bounds, solid_of
+from cartwheel.dialects.sinking import is_in_water
 from cartwheel.geometry import Pose
 
 HIGH = 5.0
 """m."""
 _WATER = """<sdf version="1.9"><world name="water"><gravity>0 0 -9.8</gravity>
 <plugin name="buoyancy" filename="gz-sim-buoyancy-system"/></world></sdf>"""
-"""A world filled with water, for robots with thrusters."""
+"""A world filled with water, for vehicles in water."""
 _SPACE = """<sdf version="1.9"><world name="space"><gravity>0 0 0</gravity></world></sdf>"""
 """A world without gravity and ground, for spacecraft."""
 
 
 def surroundings(robot: RobotDescription) -> str:
     """The world in which a robot is tested."""
-    if has_thrusters(robot):
+    if is_in_water(robot):
         return _WATER
     return _SPACE if is_in_space(robot) else "empty"
 

@@ -20,6 +20,8 @@ TILTED = 0.1
 """rad; maximum tilt."""
 RISEN = 0.2
 """m; minimum increase in height of an aircraft that takes off."""
+_DEEP = 1.0
+"""m; least way by which a vehicle in water sinks that is too heavy for it."""
 CREEPING = 0.01
 """m/s and rad/s; maximum motion of a standing robot."""
 MOVED = 0.1
@@ -52,6 +54,8 @@ class Stand:
     """Longest edge of the robot's bounding box, m."""
     floats: bool = False
     """Whether it was tested in water, where it need not stand."""
+    heavy: bool = False
+    """Whether it weighs much more than the water that it displaces."""
     settled: float | None = None
     """Decrease in height of the lowest collision, m, if all links had moved with the root; None for
     `sunk`. A long robot that tilts a little until it rests on another part lowers its root, but not
@@ -63,7 +67,7 @@ class Stand:
         if self.fixed:
             return "fixed"
         if self.floats:
-            return "floats"
+            return "sinks" if self.heavy and self.sunk > max(_DEEP, self.size) else "floats"
         if self.speed > CREEPING or self.turn > CREEPING:
             return "moves"
         if self.tilt > TILTED:

@@ -31,6 +31,7 @@ from cartwheel.checks.rules.devices import (
 from cartwheel.checks.rules.files import missing_files, package_uris, unused_definitions
 from cartwheel.checks.rules.robot import (
     balance,
+    buoyancy,
     drive_joints,
     friction,
     inertias,
@@ -82,6 +83,7 @@ RULES: tuple[Rule, ...] = tuple(
         joint_axes,
         inertias,
         masses,
+        buoyancy,
         light_roots,
         drive_joints,
         fixed_base,

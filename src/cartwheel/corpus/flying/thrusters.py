@@ -31,11 +31,6 @@ _OTHERS = 64
 """Number of valves that stay closed after the opened one in a command."""
 
 
-def has_thrusters(robot: RobotDescription) -> bool:
-    """Whether a robot moves in water."""
-    return any(plugin_named(tag.filename) is ThrusterSystem for tag in robot.plugins)
-
-
 def is_in_space(robot: RobotDescription) -> bool:
     """Whether a robot moves without weight."""
     return any(plugin_named(tag.filename) is SpacecraftThrusterSystem for tag in robot.plugins)
