@@ -1,4 +1,7 @@
-"""YAML files with controllers, in the formats of rosparam and ros2_control."""
+"""YAML files with controllers, in the formats of rosparam and ros2_control.
+
+The file is long because both formats share most of the reading.
+"""
 
 from __future__ import annotations
 
