@@ -110,7 +110,7 @@ def test_all_expressions_together_take_a_limited_time(
     "text",
     [
         "for i in range(400):\n" + "  pass\n" * 1000,
-        "for i in range(400):\n  x = [" + "a, " * 1000 + "]\n",
+        "for i in range(400):\n  x = [" + "a, " * 1000 + "]\n  print(x)\n",
         'yaml.safe_load("c.yaml")\n',
         "".join(f'FindPackageShare("package{n}")\n' for n in range(100)),
         "x = " + "1 + " * 60_000 + "1\n",

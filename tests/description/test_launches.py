@@ -675,3 +675,39 @@ def test_the_namespace_of_a_single_controller_is_its_name(package, content, name
     (folder / "config/a.yaml").write_text(content)
     (use,) = [each for each in launches_near(folder) if each.file.name == "a.launch"]
     assert use.controllers == (Path(f"{name}{folder}/config/a.yaml"),)
+
+
+UNUSED = """
+def generate_launch_description():
+    text = Command(["xacro ", os.path.join(get_package_share_directory("arm"),
+                                           "urdf", "arm.urdf.xacro")])
+    gazebo = IncludeLaunchDescription(PythonLaunchDescriptionSource(
+        [FindPackageShare("ros_gz_sim"), "/launch/gz_sim.launch.py"]))
+    spawn = Node(package="ros_gz_sim", executable="create", arguments=["-string", text])
+    start = Node(package="controller_manager", executable="spawner", arguments=["a"])
+    load = ExecuteProcess(cmd=["ros2", "run", "controller_manager", "spawner", "b"])
+    %s
+"""
+
+
+@pytest.mark.parametrize(
+    ("end", "spawned"),
+    [
+        ("return LaunchDescription([gazebo, spawn])", []),
+        ("return LaunchDescription([gazebo, spawn, start])", ["a"]),
+        ("delayed = TimerAction(period=2.0, actions=[start, load])\n"
+         "    return LaunchDescription([gazebo, spawn])", []),
+        ("delayed = TimerAction(period=2.0, actions=[start, load])\n"
+         "    return LaunchDescription([gazebo, spawn, delayed])", ["a", "b"]),
+        ("nodes = [start, load]\n    return LaunchDescription([gazebo, spawn])", []),
+        ("nodes = [start, load]\n    return made(gazebo, spawn, nodes)", ["a", "b"]),
+        ("after = OnProcessExit(target_action=start, on_exit=[load])\n"
+         "    return LaunchDescription([gazebo, spawn, RegisterEventHandler(after)])", ["b"]),
+        ("return LaunchDescription([locals()[name] for name in names])", ["a", "b"]),
+        ("return Made.start(start, gazebo)", ["a"]),
+    ],
+)  # fmt: skip
+def test_actions_in_python_that_nothing_reads_are_not_started(package, end, spawned):
+    folder = package(gazebo_dot_launch_dot_py=UNUSED % end)
+    (use,) = launches_near(folder)
+    assert sorted(use.spawned) == spawned

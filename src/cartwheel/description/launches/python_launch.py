@@ -39,6 +39,7 @@ from cartwheel.description.launches.python_functions import (
     SHARES,
     is_module,
 )
+from cartwheel.description.launches.python_unused import unused_actions
 from cartwheel.description.launches.python_values import (
     NOTHING,
     Description,
@@ -109,10 +110,13 @@ class _Reader:
         """The lines of the ``return`` statements of the last of them, and their values."""
         self._started: list[Later] = []
         """The actions that are assigned to variables."""
+        self._unused: frozenset[ast.stmt] = frozenset()
+        """The statements whose actions nothing uses."""
 
     def file(self, tree: ast.Module) -> None:
-        """Evaluates a launch file. Actions that it assigns, but does not use are started last."""
+        """Evaluates a launch file. Actions whose use is unknown are started last."""
         self._functions = called_functions(tree)
+        self._unused = unused_actions(tree, self._facts.effort)
         space = self._facts.namespace
         try:
             self.block(tree.body)
@@ -133,6 +137,8 @@ class _Reader:
         """
         for each in statements:
             self._facts.effort.spend()
+            if each in self._unused:
+                continue
             if isinstance(each, ast.FunctionDef) and each.name in self._functions:
                 continue
             if isinstance(each, ast.Assign):
