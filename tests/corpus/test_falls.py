@@ -115,3 +115,23 @@ def test_an_arm_that_starts_outside_its_limits_carries_nothing(tried):
     """The robot tips because of its own weight."""
     parts = [each.replace('lower="-3"', 'lower="0.6"') for each in arm(far=0.3)]
     assert stand_of(tried(*parts)).code is UNBALANCED
+
+
+CAMERA = (
+    '<xacro:include filename="$(find realsense2_description)/urdf/_d435.urdf.xacro"/>'
+    '<xacro:sensor_d435 parent="head"><origin xyz="0 0 0.2"/></xacro:sensor_d435>'
+)
+
+
+@pytest.mark.parametrize("with_own", [False, True])
+def test_the_sensors_that_only_a_stand_in_adds_are_not_for_gazebo(tmp_path, with_own):
+    """The driver of the camera publishes its images; the original package has no sensors."""
+    *parts, own = arm("fixed", far=0.3)
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text(
+        '<robot name="robot" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        f"{''.join(parts)}{CAMERA}{own * with_own}</robot>"
+    )
+    verdict = try_robot(path, standing=3.0)
+    assert not verdict.stands
+    assert verdict.good is not with_own

@@ -287,8 +287,16 @@ def is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
 
 
 def has_devices(description: RobotDescription) -> bool:
-    """Whether a description contains plugins or sensors for Gazebo."""
-    return bool(description.plugins) or any(link.sensors for link in description.links)
+    """Whether a description contains plugins or sensors for Gazebo.
+
+    Sensors that only Cartwheel's stand-in for a package adds do not count.
+    """
+    sensors = {sensor.name for link in description.links for sensor in link.sensors}
+    for each in description.diagnostics:
+        added = each.values.get("added_sensors", ())
+        if each.code is files.STAND_IN_USED and isinstance(added, tuple):
+            sensors.difference_update(added)
+    return bool(description.plugins or sensors)
 
 
 def need_not_stand(verdict: Verdict, description: RobotDescription) -> bool:

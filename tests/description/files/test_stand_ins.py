@@ -230,3 +230,11 @@ def test_the_base_of_an_example_robot_is_spare(load_robot, own):
     assert [each.name for each in robot.links].count("base_link") == 1
     assert "if_undefined" not in robot.text
     assert "camera_depth" in sensors(robot)
+
+
+def test_the_sensors_that_the_original_package_does_not_contain_are_named(load_robot):
+    (found,) = coded(load_robot(LINK, include(), CALL), files.STAND_IN_USED)
+    assert set(found.values["added_sensors"]) == {"camera_color", "camera_depth", "camera_infra2"}
+    own = load_robot(LINK, include(), CALL, CAMERA.format("camera_link"))
+    (found,) = coded(own, files.STAND_IN_USED)
+    assert found.values["added_sensors"] == ()

@@ -18,7 +18,7 @@ SPARE = "if_undefined"
 """Attribute of a link that is removed if the robot's files define a link with this name."""
 
 
-def choose_driver_parts(root: Node) -> None:
+def choose_driver_parts(root: Node) -> tuple[str, ...]:
     """Removes the marked elements of each device that has sensors of its own, and all marks.
 
     A device's marked elements are also removed if the robot's files define one of its links or
@@ -26,6 +26,9 @@ def choose_driver_parts(root: Node) -> None:
 
     Args:
         root: The expanded robot.
+
+    Returns:
+        The names of the marked sensors that remain, which the original package does not contain.
     """
     stated = _names([node for node in root.children if SPARE not in node.attributes])
     root.children = [
@@ -40,10 +43,18 @@ def choose_driver_parts(root: Node) -> None:
         if not _is_sensed(device, own, parts) and not _names(own) & _names(parts):
             continue
         root.children = [node for node in root.children if node.attributes.get(MARK) != device]
+    sensors = tuple(
+        each.attributes.get("name", "").strip()
+        for node in root.children
+        if node.attributes.get(MARK)
+        for each in node.children
+        if each.tag == "sensor"
+    )
     for node in root.children:
         if MARK in node.attributes or SPARE in node.attributes:
             kept = {k: v for k, v in node.attributes.items() if k not in (MARK, SPARE)}
             node.set_attributes(kept)
+    return sensors
 
 
 def _is_sensed(device: str, own: Iterable[Node], parts: Iterable[Node]) -> bool:

@@ -64,13 +64,13 @@ def expand(
     replace_functions(module, run)
     run.execute(module, content)
     root = to_node(run.document.documentElement)
-    choose_driver_parts(root)
+    sensors = choose_driver_parts(root)
     run.absences.connect(root)
     return Expansion(
         root=root,
         diagnostics=(
             *run.diagnostics,
-            *_stand_ins(packages),
+            *_stand_ins(packages, sensors),
             *_unknown_arguments(run, arguments),
         ),
         files=tuple(dict.fromkeys(run.files)),
@@ -78,14 +78,15 @@ def expand(
     )
 
 
-def _stand_ins(packages: Packages) -> Iterator[Diagnostic]:
+def _stand_ins(packages: Packages, sensors: tuple[str, ...]) -> Iterator[Diagnostic]:
+    """Notes about the stand-ins; `sensors` are those that the original packages do not contain."""
     for name, origin in packages.stand_ins.items():
         yield codes.STAND_IN_USED.diagnostic(
             f'the package "{name}" was not found, and Cartwheel\'s stand-in for it is used: its '
             "frames and sensors match, but its shapes are plain",
             origin=origin,
             hint=packages.how_to_install(name),
-            values={"package": name},
+            values={"package": name, "added_sensors": sensors},
         )
 
 
