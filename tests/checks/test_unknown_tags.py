@@ -47,3 +47,17 @@ def test_the_call_of_a_macro_without_prefixes_is_no_misspelt_tag(tmp_path):
     macro = f'<macro name="box_inertia" params="m x y z">{INERTIA}</macro>'
     (one,) = ignored(tmp_path, f"<box_inertia {SIZES}/>", macro)
     assert one.instead == f"<xacro:box_inertia {SIZES}/>"
+
+
+@pytest.mark.parametrize("beside", [True, False])
+def test_a_parameter_beside_its_plugin_is_said_to_belong_in_it(bench, beside):
+    plugin = '<plugin name="c" filename="libgazebo_ros2_control.so"/>' * beside
+    text = (
+        f'<robot name="r"><link name="base"/><gazebo>{plugin}<parameters>c.yaml</parameters>'
+        "</gazebo></robot>"
+    )
+    (found,) = [
+        each for each in bench.find(text, "tag-ignored") if each.values["tag"] == "parameters"
+    ]
+    named = "libgazebo_ros2_control.so" if beside else None
+    assert found.values.get("beside") == named

@@ -77,6 +77,7 @@ def unread(
             form="<{}>",
             values=values,
             lost=_subject(plugins),
+            beside=next((_name_of(each) for each in node.children if each.tag == "plugin"), ""),
         )
 
 
@@ -131,6 +132,7 @@ def _ignored(
     form: str,
     values: Mapping[str, Value],
     lost: str = "",
+    beside: str = "",
 ) -> Diagnostic:
     """The diagnostic for a part without effect.
 
@@ -142,15 +144,20 @@ def _ignored(
         form: How this name is written.
         values: For programs.
         lost: Plugins in the part, with a verb.
+        beside: A plugin in the same element, whose parameter the part may be meant to be.
     """
     if reason is not None:
         return codes.TAG_IGNORED.diagnostic(
             f"{what} has no effect: {reason}", origin=origin, severity="info", values=values
         )
+    hint = f"Did you mean {form.format(meant)}?" if meant else ""
+    if not hint and beside and not lost:
+        values = {**values, "beside": beside}
+        hint = f'If it is a parameter of the plugin "{beside}", write it inside the <plugin>.'
     return codes.TAG_IGNORED.diagnostic(
         f"{what} is unknown and ignored" + (f", so {lost} not loaded" if lost else ""),
         origin=origin,
-        hint=f"Did you mean {form.format(meant)}?" if meant else "",
+        hint=hint,
         values={**values, "meant": meant or ""},
     )
 
