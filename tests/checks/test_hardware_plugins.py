@@ -82,6 +82,41 @@ def test_transmissions_need_the_plugin_that_runs_controllers(
     assert not reported or verdict.outcome == "file"
 
 
+MOCK = "mock_components/GenericSystem"
+SIM = '<node pkg="ros_gz_sim" exec="create" args="-topic robot_description"/>'
+
+
+@pytest.mark.parametrize(
+    ("hardware", "launch", "reported"),
+    [
+        (MOCK, (SIM, "arm_controller", ""), True),
+        ("own_arm/ArmHardware", (SIM, "arm_controller", ""), True),
+        (MOCK, (SIM, "joint_state_broadcaster", ""), False),
+        (MOCK, ("", "arm_controller", ""), False),
+        (MOCK, (SIM, "arm_controller", " real:=$(eval clock())"), False),
+    ],
+)
+def test_controllers_in_gazebo_need_hardware_for_it(tmp_path, hardware, launch, reported):
+    gazebo, controllers, argument = launch
+    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
+    (tmp_path / "arm.urdf").write_text(arm("", hardware=hardware))
+    (tmp_path / "arm.launch.xml").write_text(
+        '<launch><node pkg="robot_state_publisher" exec="robot_state_publisher">'
+        '<param name="robot_description" '
+        f"value=\"$(command 'xacro $(find-pkg-share arm)/arm.urdf{argument}')\"/></node>{gazebo}"
+        f'<node pkg="controller_manager" exec="spawner" args="{controllers}"/></launch>'
+    )
+    verdict = try_robot(tmp_path / "arm.urdf", standing=1.0)
+    found = [
+        (each.subject, each.reason.values["hardware"])
+        for each in verdict.faults
+        if each.code is HARDWARE_WITHOUT_PLUGIN
+    ]
+    assert found == [("arm_controller", hardware)] * reported
+    assert verdict.outcome == ("file" if reported else "good")
+    assert verdict.should_move is reported
+
+
 CLASSIC, GZ = "gazebo_ros2_control", "gz_ros2_control"
 SYSTEM = {CLASSIC: f"{CLASSIC}/GazeboSystem", GZ: f"{GZ}/GazeboSimSystem"}
 FILE = {CLASSIC: f"lib{CLASSIC}.so", GZ: f"{GZ}-system"}

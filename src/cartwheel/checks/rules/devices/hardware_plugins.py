@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 from dataclasses import replace
 from pathlib import Path, PurePath
 
@@ -16,6 +16,7 @@ from cartwheel.codes import devices as devices_codes
 from cartwheel.codes import files
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.ros_version import ros_version
+from cartwheel.description.model import Element
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros_control.interfaces import (
@@ -69,36 +70,57 @@ def hardware_unknown(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
-    """Transmissions of a robot that a launch file starts in Gazebo with controllers, although no
-    plugin runs them.
+    """Transmissions, or hardware of ``<ros2_control>`` that is not for Gazebo, of a robot that a
+    launch file starts in Gazebo with controllers, although no plugin runs them.
     """
     description, use = robot.description, subject.launch
-    movable = {each.name for each in description.joints if each.type != "fixed"}
-    listed = [
-        each
-        for each in description.transmissions
-        if any((one.attribute("name") or "").strip() in movable for one in each.find_all("joint"))
-    ]
     if (
         use is None
         or not use.simulated
         or all(_STATES in name for name in use.spawned)
-        or not listed
-        or description.ros2_control
-        or ros_version(Path(description.origin.file)) == 2
         or any(map(drives_joints, description.plugins))
         or any(each.code in _ABSENT for each in description.diagnostics)
     ):
         return
+    first = next(name for name in use.spawned if _STATES not in name)
     names = ", ".join(f'"{name}"' for name in use.spawned)
-    file = f"lib{ROS_CONTROL}.so"
-    yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
-        f'"{use.file.name}" starts the controllers {names}, but the description does not contain '
-        f'the plugin "{file}", which runs them, so no controller starts',
-        origin=listed[0].origin,
-        values={"hardware": "transmission", "plugin": file, "name": use.spawned[0]},
-        hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
-    )
+    starts = f'"{use.file.name}" starts the controllers {names}, but the description'
+    movable = {each.name for each in description.joints if each.type != "fixed"}
+    if description.ros2_control:
+        # An argument that is unknown, or that the user states, may select a plugin.
+        systems = _listing(description.ros2_control, movable) if is_started(subject) else []
+        hardware = hardware_of(systems[0]) if systems else ""
+        if not hardware or hardware in MANAGERS:
+            return
+        usable = (f'<plugin>{each}</plugin> with "{file}"' for each, file in MANAGERS.items())
+        yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
+            f"{starts} does not contain a plugin that runs controllers in Gazebo, and its hardware "
+            f'"{hardware}" is not for Gazebo, so no controller moves its joints there',
+            origin=(systems[0].find("hardware/plugin") or systems[0]).origin,
+            values={"hardware": hardware, "plugin": "", "name": first},
+            hint=f"In Gazebo, use {' or '.join(usable)}.",
+            mark=hardware,
+        )
+        return
+    listed = _listing(description.transmissions, movable)
+    if listed and ros_version(Path(description.origin.file)) != 2:
+        file = f"lib{ROS_CONTROL}.so"
+        yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
+            f'{starts} does not contain the plugin "{file}", which runs them, so no controller '
+            "starts",
+            origin=listed[0].origin,
+            values={"hardware": "transmission", "plugin": file, "name": first},
+            hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
+        )
+
+
+def _listing(elements: Iterable[Element], joints: Set[str]) -> list[Element]:
+    """The transmissions, or tags of ros2_control, that list one of the joints."""
+    return [
+        each
+        for each in elements
+        if any((one.attribute("name") or "").strip() in joints for one in each.find_all("joint"))
+    ]
 
 
 def _unloaded(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
