@@ -1054,7 +1054,7 @@ def test_an_unsupported_plugin_with_gains_or_motors_is_a_fault(tried, tag):
     assert verdict.should_move
 
 
-def test_wheels_whose_drive_was_in_an_absent_file_are_a_fault(tmp_path):
+def test_wheels_whose_drive_is_in_a_package_that_is_not_installed_are_unknown(tmp_path):
     path = tmp_path / "cart.xacro"
     include = '<xacro:include filename="$(find far_drive)/drive.xacro"/>'
     wheels = cart(0.1).replace(DRIVE.format(diameter=0.1), include)
@@ -1063,7 +1063,7 @@ def test_wheels_whose_drive_was_in_an_absent_file_are_a_fault(tmp_path):
     verdict = try_robot(path, standing=1.0)
     assert verdict.loaded
     (fault,) = verdict.faults
-    assert (fault.test, fault.code, fault.source) == ("plugin", INCLUDE_ABSENT, "file")
+    assert (fault.test, fault.code, fault.source) == ("plugin", INCLUDE_ABSENT, "unknown")
     assert verdict.should_move
     assert not verdict.moves
 

@@ -166,7 +166,8 @@ def missing_movers(
             if unknown and not _is_prefixed(reason):
                 # The part that contains the joint may be in a file that is absent.
                 reason = coded(said, frozenset({files.INCLUDE_ABSENT})) or reason
-            yield Fault(test="controller", subject=name, reason=reason)
+            sure = not _is_in_unfound_package(reason)
+            yield Fault(test="controller", subject=name, reason=reason, sure=sure)
         found = next((each for each in verdict.observed if _contains(each, name)), None)
         if found is not None:
             unread = found
@@ -257,7 +258,7 @@ def _lost_mover(verdict: Verdict, description: RobotDescription) -> Fault | None
 
     A robot without wheels need not move, unless a launch file starts it in Gazebo, or the include
     contains its base. Then it is unknown whether the include would move it, as it is if a build
-    makes the file.
+    makes the file, or if its package was not found.
     """
     absent = [each for each in verdict.diagnostics if each.code is files.INCLUDE_ABSENT]
     made = [each for each in absent if each.values.get("template")]
@@ -271,7 +272,13 @@ def _lost_mover(verdict: Verdict, description: RobotDescription) -> Fault | None
     if lost is None or not (wheels or started or baseless):
         return None
     subject = str(lost.values.get("file", ""))
-    return Fault(test="plugin", subject=subject, reason=lost, sure=wheels and not made)
+    sure = wheels and not made and not _is_in_unfound_package(lost)
+    return Fault(test="plugin", subject=subject, reason=lost, sure=sure)
+
+
+def _is_in_unfound_package(reason: Diagnostic) -> bool:
+    """Whether an include is left out because its package is not installed here."""
+    return reason.code is files.INCLUDE_ABSENT and reason.values.get("kind") == "package"
 
 
 def _is_misplaced(each: Diagnostic) -> bool:
