@@ -439,6 +439,52 @@ def test_controllers_sizes_are_those_of_the_car(reported, take, tmp_path, case):
         assert reported(car(), controller_files=[path]) == []
 
 
+def resized(text, wheel, radius):
+    """The car with another radius of a wheel."""
+    before, start, after = text.partition(f'<link name="{wheel}">')
+    assert start
+    after = after.replace(f'radius="{RADIUS}"', f'radius="{radius}"', 1)
+    return before + start + after
+
+
+@pytest.mark.parametrize("wheel", ["rear_left_wheel", "rear_right_wheel"])
+@pytest.mark.parametrize("way", ["ROS 1", "ROS 2", "gz-sim"])
+def test_the_wheels_of_both_sides_are_compared(bench, tmp_path, way, wheel):
+    """The robot drives with the mean of both radii."""
+    path = tmp_path / "car.yaml"
+    path.write_text(ROS2_DIFF if way == "ROS 2" else ROS1_DIFF)
+    tags = {**REAR, "wheel_separation": TRACK, "wheel_radius": RADIUS}
+    gz = way == "gz-sim"
+    text = resized(car(plugin("gz-sim-diff-drive-system", **tags) if gz else ""), wheel, 0.12)
+    files = [] if gz else [path]
+    (finding,) = bench.find(text, "wheel-diameter-mismatch", controller_files=files)
+    assert finding.values["measured"] == pytest.approx(0.11)
+    assert finding.values["joint"] == wheel.replace("wheel", "joint")
+    assert f'of the wheel "{wheel}" is 0.12 m and that of the wheel' in finding.message
+    assert "drives 10% faster" in finding.message
+    assert not finding.instead
+
+
+def test_different_wheels_with_the_stated_mean_do_not_drive_straight(bench, tmp_path):
+    path = tmp_path / "car.yaml"
+    path.write_text(ROS2_DIFF)
+    text = resized(resized(car(), "rear_left_wheel", 0.11), "rear_right_wheel", 0.09)
+    (finding,) = bench.find(text, "wheel-diameter-mismatch", controller_files=[path])
+    assert finding.message.endswith("so the robot does not drive straight")
+
+
+def test_wheels_above_the_ground_do_not_count_for_the_radius(bench, tmp_path):
+    """Four wheels are driven, and the front ones are smaller than their axles are high."""
+    path = tmp_path / "car.yaml"
+    path.write_text(
+        ROS2_DIFF.replace("[rear_left_joint]", "[front_left_joint, rear_left_joint]").replace(
+            "[rear_right_joint]", "[front_right_joint, rear_right_joint]"
+        )
+    )
+    text = resized(resized(car(), "front_left_wheel", 0.05), "front_right_wheel", 0.05)
+    assert not bench.find(text, "wheel-diameter-mismatch", controller_files=[path])
+
+
 @pytest.mark.parametrize("text", [ROS1_DIFF, ROS2_DIFF])
 def test_swapped_wheels_of_a_controller_are_found(bench, tmp_path, text):
     path = tmp_path / "car.yaml"

@@ -46,7 +46,7 @@ class Stated:
     written: bool
     """False for a plugin's default."""
     first: tuple[str, ...]
-    """Joints of the left or front wheels, or of the measured wheels."""
+    """Joints of the left or front wheels; for a radius or diameter, of all wheels."""
     second: tuple[str, ...] = ()
     skids: bool = False
     """Whether several wheels on a side slide during turns."""
@@ -174,12 +174,10 @@ def _is_wheel(robot: Robot, name: str) -> bool:
 def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
     measure = _MEASURES[size.role]
     groups = [_joints(robot, tag, names) for names in size.wheels]
-    if not all(groups):
-        return
-    first, second = groups if len(groups) == 2 else (groups[0], ())
-    if measure == "base":
+    if measure == "base" and len(groups) == 2:
         # Some drives also drive the wheels of the steered axle.
-        second = tuple(name for name in second if not _is_steered(robot, name, first)) or second
+        first, second = groups
+        groups[1] = tuple(name for name in second if not _is_steered(robot, name, first)) or second
     name = next((name for name in size.tags if tag.element.find(name) is not None), "")
     written = list(tag.element.find_all(name)) if name else []
     if len({nodes.number(each.text) for each in written}) == 1:
@@ -189,7 +187,8 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
         value = nodes.number(element.text)
         # Different sizes apply to one wheel pair each.
         pick = slice(index, index + 1) if len(written) > 1 else slice(None)
-        if value is None or not first[pick] or (second and not second[pick]):
+        joints = _measured([group[pick] for group in groups], measure)
+        if value is None or joints is None:
             continue
         yield Stated(
             robot=robot,
@@ -197,15 +196,16 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
             label=f"<{name}>",
             value=value,
             written=True,
-            first=first[pick],
-            second=second[pick],
-            skids=len(first[pick]) > 1,
+            first=joints[0],
+            second=joints[1],
+            skids=len(joints[0]) > 1,
             origin=element.origin,
             mark=element.text.strip(),
             write=lambda number, name=name: nodes.written(name, {}, number),  # type: ignore[misc]
             place="element",
         )
-    if not written and size.default:
+    joints = _measured(groups, measure)
+    if not written and size.default and joints is not None:
         name = size.tags[-1] if "gazebo_ros" in tag.filename and _is_new(tag) else size.tags[0]
         yield Stated(
             robot=robot,
@@ -213,14 +213,30 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
             label=f"<{name}>",
             value=float(size.default[0]),
             written=False,
-            first=first,
-            second=second,
-            skids=len(first) > 1,
+            first=joints[0],
+            second=joints[1],
+            skids=len(joints[0]) > 1,
             origin=tag.origin,
             mark=tag.filename,
             write=lambda number: nodes.written(name, {}, number),
             place="inside",
         )
+
+
+def _measured(
+    groups: Sequence[tuple[str, ...]], measure: Measure
+) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """The joints of the measured wheels; see `Stated.first`. None if some are unknown.
+
+    Args:
+        groups: The joints between which a distance is measured, or of all wheels with a size.
+        measure: What is measured.
+    """
+    if measure in ("radius", "diameter"):
+        groups = [tuple(dict.fromkeys(name for group in groups for name in group))]
+    if not all(groups):
+        return None
+    return groups[0], groups[1] if len(groups) == 2 else ()
 
 
 def _is_steered(robot: Robot, wheel: str, steering: Sequence[str]) -> bool:
@@ -286,8 +302,9 @@ def _of_controller(
         sides = [tuple(_known(robot, group)) or tuple(stands_in) for group in groups]
         if row.role == "wheel_base" and len(sides) == 1:
             sides.append(passive_axle(robot, sides[0]))
+        measured = _measured(sides, _MEASURES[row.role])
         written = value or times
-        if written is None or (value is not None and number is None) or not all(sides):
+        if written is None or (value is not None and number is None) or measured is None:
             continue
         name = next((each for each in spellings if controller.has(each)), spellings[0])
         multiplier = f"{name}_multiplier"
@@ -304,9 +321,9 @@ def _of_controller(
             label=f'"{name.rpartition("/")[2]}"',
             value=number or 0.0,
             written=True,
-            first=sides[0],
-            second=sides[1] if len(sides) == 2 else (),
-            skids=len(sides[0]) > 1,
+            first=measured[0],
+            second=measured[1],
+            skids=len(measured[0]) > 1,
             factor=factor,
             multiplier=multiplier.rpartition("/")[2] if scales else "",
             origin=written.origin,

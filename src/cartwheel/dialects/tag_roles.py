@@ -61,7 +61,7 @@ class TagRole:
     obsolete: tuple[str, ...] = ()
     """Spellings that Gazebo 11 ignores."""
     wheels: tuple[tuple[str, ...], ...] = ()
-    """For a size: the tags of the measured wheels' joints. A distance has two groups of them."""
+    """For a size: the tags of the measured wheels' joints, in groups. A distance has two groups."""
 
     def joints(self, element: Element) -> tuple[str, ...]:
         """Returns the joints in the tag, or the default joints; `element` contains the tag."""

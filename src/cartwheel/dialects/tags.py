@@ -26,6 +26,7 @@ _SHOWN = 80
 SMALLEST = 1e-9
 """Smallest value of parameters that must be positive, in SI units."""
 _MOST_COUNT = 2**31 - 1
+_SIZES: tuple[Role, ...] = ("wheel_separation", "wheel_base", "wheel_radius", "wheel_diameter")
 _TRUE = {"true", "1", "yes", "on"}
 _FALSE = {"false", "0", "no", "off"}
 
@@ -57,7 +58,8 @@ def tag(
         nested: Whether the tag contains other tags, which the plugin reads itself.
         role: Meaning of the tag, for the rules of ``cartwheel check``. A value in Hz is a rate.
         wheels: For a role that is a size: the fields with the joints of the measured wheels, two of
-            them for a distance. Defaults to the fields whose roles are wheels.
+            them for a distance, and those of all wheels for a radius or diameter. Defaults to the
+            fields whose roles are wheels.
         obsolete: Spellings that Gazebo 11 ignores.
         doc: Description for the plugin reference, one or two sentences. A last sentence
             ``Default: ...`` describes a default that depends on something else.
@@ -111,14 +113,13 @@ def roles_of(cls: type) -> tuple[TagRole, ...]:
         if default in (dataclasses.MISSING, None):
             default = ()
         measured = [fields[name].metadata["tags"] for name in item.metadata["wheels"]] or sides
-        count = {"wheel_separation": 2, "wheel_base": 2, "wheel_radius": 1, "wheel_diameter": 1}
         roles.append(
             TagRole(
                 role=role,
                 tags=item.metadata["tags"],
                 obsolete=item.metadata["obsolete"],
                 default=default if isinstance(default, tuple) else (default,),
-                wheels=tuple(measured[: count.get(role, 0)]),
+                wheels=tuple(measured) if role in _SIZES else (),
             )
         )
     return tuple(roles)

@@ -65,7 +65,7 @@ class GzAckermannParameters(GzLimitedParameters):
         "wheel_radius",
         default=0.2,
         role="wheel_radius",
-        wheels=("left_joint",),
+        wheels=("left_joint", "right_joint"),
         doc="Radius of all wheels.",
     )
     steer_gain: float = tag(

@@ -55,7 +55,7 @@ class MecanumParameters(GzCommonLimits):
         "wheel_radius",
         default=0.2,
         role="wheel_radius",
-        wheels=("front_left",),
+        wheels=("front_left", "front_right", "back_left", "back_right"),
         doc="Radius of all wheels.",
     )
 

@@ -58,7 +58,7 @@ class TricycleParameters:
         "encoder_wheel_diameter",
         default=0.15,
         role="wheel_diameter",
-        wheels=("left_joint",),
+        wheels=("left_joint", "right_joint"),
         doc="Diameter of the passive wheels.",
     )
     encoder_separation: float = size_tag(

@@ -68,7 +68,7 @@ class DiffDriveParameters(FramePrefixParameters):
         default=None,
         unit="m",
         role="wheel_radius",
-        wheels=("left",),
+        wheels=("left", "right"),
         doc="Radius of the wheels. Default: read from the description.",
     )
     radius_factor: float = parameter(

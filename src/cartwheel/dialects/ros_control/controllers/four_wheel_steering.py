@@ -75,7 +75,7 @@ class FourWheelSteeringParameters(OdometryParameters):
         default=None,
         unit="m",
         role="wheel_radius",
-        wheels=("front_wheels",),
+        wheels=("front_wheels", "rear_wheels"),
         positive=True,
         doc="Radius of the wheels. Default: read from the description.",
     )

@@ -56,7 +56,7 @@ class MecanumParameters(FramePrefixParameters):
         default=None,
         unit="m",
         role="wheel_radius",
-        wheels=("front_left",),
+        wheels=("front_left", "front_right", "rear_left", "rear_right"),
         doc="Radius of the wheels. Default: read from the description.",
     )
     radius_factor: float = parameter(
