@@ -324,3 +324,6 @@ ODOMETRY_FRAME_IS_LINK = Code(
     "warning",
     "the odometry frame of a drive is a link of the robot",
 )
+NOISE_TYPE_UNKNOWN = Code(
+    "CW494", "noise-type-unknown", "error", "the noise of a sensor has a type that does not exist"
+)

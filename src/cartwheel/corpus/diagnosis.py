@@ -227,12 +227,15 @@ def _dropped(verdict: Verdict, description: RobotDescription) -> Iterator[tuple[
 
 
 def _refused(description: RobotDescription) -> Diagnostic | None:
-    """An inertia for which gz-sim does not load a robot that is for gz-sim only."""
+    """An inertia for which gz-sim does not load a robot that is for gz-sim only, or noise for which
+    it does not, and with which Gazebo Classic crashes.
+    """
     return next(
         (
             each
             for each in description.diagnostics
-            if each.code is robot.INERTIA_IMPOSSIBLE and each.values.get("refused") is True
+            if (each.code is robot.INERTIA_IMPOSSIBLE and each.values.get("refused") is True)
+            or (each.code is devices.NOISE_TYPE_UNKNOWN and each.severity == "error")
         ),
         None,
     )

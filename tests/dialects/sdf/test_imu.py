@@ -42,10 +42,10 @@ def test_an_imu_sensors_noise_is_its_own_by_axis(make, read, plugin, topic):
     assert messages[0].linear_acceleration_covariance[0] == pytest.approx(0.2**2)
 
 
-def test_a_sensor_of_unknown_noise_is_left_out(make):
+def test_a_sensor_of_invalid_noise_is_left_out(make):
     model = unit(
         sensor='<sensor name="s" type="imu"><topic>t</topic><imu><angular_velocity><x>'
-        '<noise type="pink"/></x></angular_velocity></imu></sensor>'
+        '<noise type="gaussian"><stddev>-1</stddev></noise></x></angular_velocity></imu></sensor>'
     )
     world = floating(make, model)
     (reported,) = [each for each in world.diagnostics if each.severity == "error"]

@@ -41,7 +41,9 @@ def test_the_tags_fill_the_fields():
     assert not reports
 
 
-@pytest.mark.parametrize("element", [None, noise("none", stddev="1"), noise("", stddev="1")])
+@pytest.mark.parametrize(
+    "element", [None, *(noise(kind, stddev="1") for kind in ("none", "", "pink", "custom"))]
+)
 def test_without_noise_all_fields_are_zero(element):
     assert read_noise(element, pytest.fail) == Noise()
 
@@ -62,7 +64,7 @@ def test_tags_without_effect_are_reported(tags, expected):
 
 
 @pytest.mark.parametrize(
-    "element", [noise("pink"), noise("gaussian", stddev="-1"), noise("gaussian", mean="much")]
+    "element", [noise("gaussian", stddev="-1"), noise("gaussian", mean="much")]
 )
 def test_an_invalid_noise_is_an_error_at_its_line(element):
     with pytest.raises(PluginError) as raised:

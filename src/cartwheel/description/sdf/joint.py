@@ -234,7 +234,7 @@ def read_joint_sensors(node: Node, joint: Joint, frames: Frames, ctx: Context) -
             pose = joint.pose @ own
         return replace(read_sensor(each, joint.child, pose), joint=joint.name)
 
-    return read_sensors(node.all("sensor"), read, ctx.report)
+    return read_sensors(node.all("sensor"), read, ctx)
 
 
 def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:

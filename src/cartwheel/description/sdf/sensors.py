@@ -6,12 +6,13 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-from cartwheel.codes.tags import SENSOR_TWICE, TYPE_UNKNOWN
+from cartwheel.codes.tags import SENSOR_TWICE
 from cartwheel.description.elements.numbers import LARGEST, within
 from cartwheel.description.elements.xml import Node, copied, to_element
 from cartwheel.description.losses import loss
 from cartwheel.description.model import CameraIntrinsics, Pinhole, PluginTag, Sensor
-from cartwheel.description.sdf.context import read_pose
+from cartwheel.description.sdf.context import Context, read_pose
+from cartwheel.description.sdf.noise_types import GAUSSIAN, noise_type, report_noises
 from cartwheel.description.sdf.sensor_tags import mark_known
 from cartwheel.errors import DescriptionError, Diagnostic
 from cartwheel.geometry import Pose
@@ -82,14 +83,14 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None) -> Sensor:
 
 
 def read_sensors(
-    nodes: Iterable[Node], read: Callable[[Node], Sensor], report: Callable[[Diagnostic], None]
+    nodes: Iterable[Node], read: Callable[[Node], Sensor], ctx: Context
 ) -> list[Sensor]:
     """The sensors that can be read; the others are reported as errors and ignored.
 
     Args:
         nodes: The elements.
         read: Reads one of them.
-        report: Receives the errors.
+        ctx: Receives the errors.
     """
     sensors: list[Sensor] = []
     for node in nodes:
@@ -97,7 +98,9 @@ def read_sensors(
             sensors.append(read(node))
         except DescriptionError as error:
             node.mark()
-            report(loss(error, "the sensor is ignored", of="sensor", origin=error.origin))
+            ctx.report(loss(error, "the sensor is ignored", of="sensor", origin=error.origin))
+        else:
+            report_noises(node, ctx)
     return sensors
 
 
@@ -185,16 +188,9 @@ def _noise(node: Node | None) -> tuple[float, float]:
     """Mean and standard deviation of the pixel noise, relative to full brightness."""
     if node is None:
         return 0.0, 0.0
-    kind = (node.text_at("type") or node.get("type") or "gaussian").strip()
-    if kind == "none":
+    if noise_type(node.text_at("type") or node.get("type") or GAUSSIAN[0]) not in GAUSSIAN:
+        # Types that do not exist are reported by `report_noises`.
         return 0.0, 0.0
-    if kind != "gaussian":
-        raise node.fail(
-            f'noise of type "{kind}" is not supported',
-            "Valid types: none, gaussian.",
-            code=TYPE_UNKNOWN,
-            values={"name": kind},
-        )
     mean, stddev = (_bounded(node, name, _LOUDEST) for name in ("mean", "stddev"))
     if stddev < 0:
         raise node.fail(f"the <stddev> of noise must not be negative (got {stddev:g})")

@@ -163,7 +163,7 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
         collision.get("name")
         _read_collision(collision, tags, ctx)
     seen = {sensor.name for sensor in tags.sensors}
-    for read in read_sensors(node.all("sensor"), lambda each: read_sensor(each, link), ctx.report):
+    for read in read_sensors(node.all("sensor"), lambda each: read_sensor(each, link), ctx):
         if read.name in seen:
             ctx.report(sensor_twice(link, read))
         seen.add(read.name)

@@ -235,7 +235,7 @@ def _read_joint_tags(
     for read in read_sensors(
         node.all("sensor"),
         lambda each: replace(read_sensor(each, joint.child), joint=joint.name),
-        ctx.report,
+        ctx,
     ):
         if not of_both or read.type == _OF_JOINTS:
             child_tags.sensors.append(read)

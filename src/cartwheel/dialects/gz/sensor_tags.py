@@ -154,7 +154,7 @@ class GzSensor(SensorPlugin[C]):
             paths: Element of each quantity, below which is its ``<noise>``.
 
         Raises:
-            PluginError: A type or a number is not allowed.
+            PluginError: A number is not allowed.
         """
         return read_vector_noise(
             self.part,

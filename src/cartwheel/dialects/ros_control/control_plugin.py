@@ -21,7 +21,7 @@ from cartwheel.dialects.ros_control.robot import ControlledRobot, RobotSensor
 from cartwheel.dialects.ros_control.selection import launched
 from cartwheel.dialects.sdf.force_torque import read_joint_load
 from cartwheel.dialects.sdf.imu import read_inertial_unit
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, PluginError
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 
 
@@ -77,13 +77,23 @@ class ControlPlugin(Plugin[Any]):
         return manager
 
     def _sensors(self) -> list[RobotSensor]:
-        """Returns the robot's sensors that a broadcaster can publish."""
-        return [
-            RobotSensor(name=each.name, type=each.type, sensor=each, unit=self._unit(each))
-            for link in self.part.description.links
-            for each in link.sensors
-            if each.type == "imu" or (each.type == "force_torque" and each.joint)
-        ]
+        """Returns the robot's sensors that a broadcaster can publish.
+
+        An invalid sensor is reported, and does not stop the controllers.
+        """
+        found = []
+        links = self.part.description.links
+        for each in (sensor for link in links for sensor in link.sensors):
+            if each.type == "imu" or (each.type == "force_torque" and each.joint):
+                try:
+                    unit = self._unit(each)
+                except PluginError as error:
+                    self.part.report(error.diagnostic())
+                else:
+                    found.append(
+                        RobotSensor(name=each.name, type=each.type, sensor=each, unit=unit)
+                    )
+        return found
 
     def _unit(self, sensor: Sensor) -> InertialUnit | JointLoad:
         if sensor.joint and sensor.type == "force_torque":

@@ -8,9 +8,10 @@ from dataclasses import fields, replace
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.description.model import Element, Sensor
+from cartwheel.description.sdf.noise_types import GAUSSIAN, noise_type
 from cartwheel.devices.noise import Noise, VectorNoiseConfig
 from cartwheel.dialects.tags import number
-from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.errors import Diagnostic
 from cartwheel.simulation import Part
 
 _SIGNED = ("mean", "bias_mean")
@@ -24,22 +25,15 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
         report: Receives diagnostics about settings without effect.
 
     Raises:
-        PluginError: The type or a number is not allowed.
+        PluginError: A number is not allowed.
     """
     if element is None:
         return Noise()
     kind = element.find("type")
-    name = (kind.text if kind is not None else element.attribute("type") or "gaussian").strip()
-    if name in ("none", ""):
+    name = noise_type(kind.text if kind is not None else element.attribute("type") or "gaussian")
+    if name not in GAUSSIAN:
+        # Types that do not exist are reported when the description is read.
         return Noise()
-    if name not in ("gaussian", "gaussian_quantized"):
-        raise PluginError(
-            f'noise of type "{name}" is not supported',
-            code=devices.PLUGIN_PARAMETER_INVALID,
-            origin=element.origin,
-            hint="Supported types: none, gaussian, gaussian_quantized.",
-            values={"parameter": "noise", "value": name},
-        )
     values = {}
     # The fields have the names of the tags. As in Gazebo, the sign of the bias is random.
     for tag in (field.name for field in fields(Noise)):

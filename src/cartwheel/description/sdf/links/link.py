@@ -95,7 +95,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
 
     collisions = [_collision(each, ctx, place, directed) for each in node.all("collision")]
     sensors = read_sensors(
-        node.all("sensor"), lambda each: read_sensor(each, name, sensed(each)), ctx.report
+        node.all("sensor"), lambda each: read_sensor(each, name, sensed(each)), ctx
     )
     lights = named_apart(
         "light", [read_light(each, place(each)) for each in node.all("light")], ctx
