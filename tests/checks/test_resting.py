@@ -307,6 +307,26 @@ def test_a_robot_whose_casters_are_too_high_tilts(tmp_path, z, tilt):
     assert finding.values["tilt"] == pytest.approx(tilt, abs=0.02)
 
 
+@pytest.mark.wording
+def test_a_robot_whose_weight_is_beside_its_level_wheels_tips_onto_it(tmp_path):
+    """The ball is as low as the wheels, but the ballast is beside the line from it to a wheel."""
+    ball = link("ball", 0.1, '<sphere radius="0.02"/>')
+    ball += joint("ball", "fixed", f"0.09 0 {0.02 - RADIUS}")
+    ballast = link("ballast", 20.0, '<box size="0.02 0.02 0.02"/>')
+    ballast += joint("ballast", "fixed", f"0.08 0.08 {0.018 - RADIUS}")
+    (finding,) = balanced(tmp_path, drive(ball + ballast))
+    assert 'outside the area between "left", "right" and "ball", which' in finding.message
+    assert finding.message.endswith('° onto "ballast"')
+
+
+@pytest.mark.wording
+def test_a_robot_whose_caster_is_too_high_names_what_it_rests_on(tmp_path):
+    ball = link("ball", 5.0, '<sphere radius="0.01"/>') + joint("ball", "fixed", "0.15 0 0")
+    (finding,) = balanced(tmp_path, drive(ball))
+    assert "different heights" in finding.message
+    assert finding.message.endswith('° on "left", "right" and "ball"')
+
+
 def test_a_robot_on_two_wheels_is_reported(tmp_path):
     (finding,) = balanced(tmp_path, drive())
     assert finding.values["outside"] == 0.0

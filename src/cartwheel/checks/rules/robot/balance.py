@@ -49,9 +49,11 @@ _CASTER = re.compile(r"cast[eo]r|ball", re.IGNORECASE)
 _SLIPPERY = 0.1
 """Largest friction coefficient of a part that is meant to slide."""
 _SHOWN = 3
-"""Number of casters that a message names."""
+"""Number of links that a message names."""
+_LEGS = 3
+"""Links that a robot needs to stand."""
 _EVEN = 0.001
-"""Difference of heights that is not mentioned, relative to the robot's size."""
+"""Difference of heights that does not matter, relative to the robot's size."""
 _LATER = 1.5
 """Largest ratio of the angle at which a caster touches the ground to that of the first link: the
 body may touch the ground before casters that are too high."""
@@ -130,14 +132,47 @@ def _tilted(robot: Robot, center: Floats, points: Floats, rest: Rest) -> Iterato
             origin=robot.description.origin,
             hint="Start the program that balances the robot.",
         )
-    else:
-        yield robot_codes.UNBALANCED.diagnostic(
-            message="the points on which the robot rests have different heights, so it tilts by "
-            f"{math.degrees(tilt):.2g}°",
-            values={"tilt": tilt},
-            origin=robot.description.origin,
-            hint="Check whether all wheels and casters touch the ground at the same height.",
+        return
+    on = [
+        name
+        for name in robot.links
+        if (height := rest.height(robot, [name])) is not None and height < _FLAT * robot.size
+    ]
+    tilts = f"so it tilts by {math.degrees(tilt):.2g}°"
+    message = f"the points on which the robot rests have different heights, {tilts}"
+    hint = "Check whether all wheels and casters touch the ground at the same height."
+    level = _lowest_links(robot)
+    extra = [name for name in on if name not in level]
+    outside = _outside(points, center, robot.size, touching=_EVEN)
+    if len(level) >= _LEGS and extra and outside > 0.0:
+        message = (
+            f"the centre of mass is {1000 * outside:.3g} mm outside the area between "
+            f"{_listed(level)}, which have the same height, {tilts} onto {_listed(extra)}"
         )
+        hint = "Check whether a wheel or caster is missing, or is at the wrong place."
+    elif on:
+        message += f" on {_listed(on)}"
+    yield robot_codes.UNBALANCED.diagnostic(
+        message=message,
+        values={"tilt": tilt, "links": tuple(on)},
+        origin=robot.description.origin,
+        hint=hint,
+    )
+
+
+def _lowest_links(robot: Robot) -> list[str]:
+    """The links that touch level ground before the robot tilts."""
+    lows = {name: low for name in robot.links if (low := lowest(robot, name)) is not None}
+    least = min(lows.values(), default=0.0)
+    return [name for name, low in lows.items() if low <= least + _FLAT * robot.size]
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names in quotation marks, the first of many."""
+    shown = [f'"{name}"' for name in names]
+    if len(shown) > _SHOWN:
+        shown = [*shown[:_SHOWN], f"{len(shown) - _SHOWN} more"]
+    return " and ".join([", ".join(shown[:-1]), shown[-1]]) if len(shown) > 1 else shown[0]
 
 
 def _topples(center: Floats, points: Floats, rest: Rest, size: float) -> bool:
@@ -298,12 +333,10 @@ def _angles(robot: Robot, links: Sequence[str], wheel: Joint) -> dict[str, tuple
 
 def _named(casters: Mapping[str, float]) -> str:
     """The lowest casters as the subject of a sentence, with a verb."""
-    names = [f'"{name}"' for name in sorted(casters, key=lambda name: (casters[name], name))]
+    names = sorted(casters, key=lambda name: (casters[name], name))
     if len(names) == 1:
-        return f"its caster {names[0]} is"
-    if len(names) > _SHOWN:
-        names = [*names[:_SHOWN], f"{len(names) - _SHOWN} more"]
-    return f"its casters {', '.join(names[:-1])} and {names[-1]} are"
+        return f"its caster {_listed(names)} is"
+    return f"its casters {_listed(names)} are"
 
 
 def _raised_casters(robot: Robot, links: Sequence[str], wheel: Joint) -> dict[str, float]:
@@ -361,9 +394,12 @@ def _is_caster(link: Link) -> bool:
     return bool(slides) and all(slides)
 
 
-def _outside(points: Floats, center: Floats, size: float) -> float:
-    """Distance of a point outside the convex hull of the lowest points, from above, m."""
-    lowest = points[points[:, 2] <= points[:, 2].min() + _TOUCHES * size]
+def _outside(points: Floats, center: Floats, size: float, touching: float = _TOUCHES) -> float:
+    """Distance of a point outside the convex hull of the lowest points, from above, m.
+
+    `touching` is the height up to which points count, relative to the robot's size.
+    """
+    lowest = points[points[:, 2] <= points[:, 2].min() + touching * size]
     angles = np.linspace(0.0, 2 * np.pi, _DIRECTIONS, endpoint=False)
     directions = np.stack([np.cos(angles), np.sin(angles)])
     reach = (lowest[:, :2] @ directions).max(axis=0)
