@@ -393,3 +393,29 @@ def test_a_nameless_fragment_that_needs_an_absent_package_is_a_part(tmp_path, na
     found = survey(tmp_path)
     assert found.skipped == (((path, kind),) if kind else ())
     assert found.robots == (() if kind else (path,))
+
+
+MOUNT = (
+    '<joint name="mount" type="fixed"><parent link="{}"/><child link="palm"/></joint>'
+    '<joint name="knuckle" type="fixed"><parent link="palm"/><child link="finger"/></joint>'
+)
+HAND = LINK.format("palm") + LINK.format("finger")
+DRIVE = '<gazebo><plugin name="p" filename="libsomeones_own.so"/></gazebo>'
+
+
+@pytest.mark.parametrize(
+    ("parent", "more", "kind"),
+    [
+        ("right_wrist", "", "part"),
+        ("right_wrist", DRIVE, None),
+        ("right_wrist", LINK.format("loose"), None),
+        # A misspelt link, or the root link that a robot lacks.
+        ("fingr", "", None),
+        ("base_footprint", "", None),
+    ],
+)
+def test_a_hand_for_an_arm_elsewhere_is_a_part(tmp_path, parent, more, kind):
+    path = tmp_path / "hand.urdf"
+    path.write_text(f'<robot name="hand">{HAND}{MOUNT.format(parent)}{more}</robot>')
+    assert kinds(tmp_path) == ({"hand.urdf": kind} if kind else {})
+    assert kinds(tmp_path, launched=["hand.urdf"]) == {}

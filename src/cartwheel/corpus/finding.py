@@ -20,6 +20,7 @@ from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.variants import SUFFIXES
 from cartwheel.description.loading import open_description, understand
 from cartwheel.errors import DescriptionError
+from cartwheel.similar_names import meant
 
 _SEMANTICS = (".srdf", ".srdf.xacro")
 """MoveIt's files, which begin like a robot."""
@@ -52,6 +53,10 @@ _USED = re.compile(
     r"<(?:link|joint|gazebo|xacro:(?!(?:include|macro|property|arg|if|unless)\b)\w+)\b"
 )
 """What a description contains beside definitions: elements, and calls of macros."""
+_OF_ROBOTS = frozenset({"plugin", "sensor", "transmission", "ros2_control"})
+"""Elements of a URDF that is more than a part without commands."""
+_ROOT_LINK = re.compile(r"base|robot|root|world|map|odom", re.IGNORECASE)
+"""Beginnings of the names of root links."""
 _VARIABLE = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 
 
@@ -62,9 +67,10 @@ Kind = Literal["macros", "part", "world", "scenery", "old version"]
 - ``part``: the file is a part of a robot: a description in a launch file includes it; or it is not
   complete, and another file includes it; or it refers to links, macros, properties or arguments
   that another file defines; or it has no link of its own, and its macros attach theirs to a link
-  that does not exist; or its ``<robot>`` has no name, and no plugin that moves it; or it is an SDF
-  model that another model includes, but no world and no launch file, and that is not fixed to the
-  world and has no plugin that moves more than single joints.
+  that does not exist; or all its links hang below one joint whose parent does not exist, without
+  plugins; or its ``<robot>`` has no name, and no plugin that moves it; or it is an SDF model that
+  another model includes, but no world and no launch file, and that is not fixed to the world and
+  has no plugin that moves more than single joints.
 - ``world``: the file is a world.
 - ``scenery``: the file is an SDF model without plugins and sensors, such as a house.
 - ``old version``: the file of a model that its ``model.config`` does not choose.
@@ -192,7 +198,7 @@ class _Folder:
             or self._hangs(path, root)
             or _only_attaches(self.texts[path], root)
         )
-        return "part" if is_part else None
+        return "part" if is_part or _is_fragment(root) else None
 
     def _sdf_kind(self, path: Path, root: Node, *, launched: bool) -> Kind | None:
         if root.tag not in ("sdf", "gazebo") or not root.all("model"):
@@ -266,6 +272,33 @@ def _missing_parents(root: Node) -> set[str]:
         if each.tag == "parent"
     }
     return parents - links - {"", "world"}
+
+
+def _is_fragment(root: Node) -> bool:
+    """Whether all links hang below one joint whose parent is a link of another robot.
+
+    The parent may also be the root link that a robot lacks by mistake: if the robot has plugins,
+    sensors or joints to command, or by the name of the parent.
+    """
+    missing = _missing_parents(root)
+    ends = [(each.child("parent"), each.child("child")) for each in root.all("joint")]
+    pairs = [
+        (parent.attributes.get("link", ""), child.attributes.get("link", ""))
+        for parent, child in ends
+        if parent is not None and child is not None
+    ]
+    mounts = [child for parent, child in pairs if parent in missing]
+    links = {each.attributes.get("name", "") for each in root.all("link")}
+    tags = {each.tag for each in root.children}
+    tags |= {each.tag for tag in root.all("gazebo") for each in tag.children}
+    if len(mounts) != 1 or not tags.isdisjoint(_OF_ROBOTS):
+        return False
+    parent = next(iter(missing))
+    below, size = {mounts[0]}, 0
+    while len(below) > size:
+        size = len(below)
+        below |= {child for upper, child in pairs if upper in below}
+    return below == links and not _ROOT_LINK.match(parent) and not meant(parent, links)
 
 
 def _mounted(texts: Mapping[Path, str], worlds: Sequence[Path]) -> Set[Path]:
