@@ -12,7 +12,7 @@ from cartwheel.checks import nodes
 from cartwheel.checks.controller_claims import idle_joints
 from cartwheel.checks.controller_search import controller_files_of
 from cartwheel.checks.repairs import displaced, mend
-from cartwheel.checks.reported import passed
+from cartwheel.checks.reported import outside_stand_ins, passed
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rules import RULES
 from cartwheel.checks.stated_sizes import controlled_sides, controlled_steering
@@ -105,6 +105,7 @@ def check(
                 *subject.find_unread(),
             ]
         )
+    findings = list(outside_stand_ins(subject.files[0], findings))
     order = {file: index for index, file in enumerate(subject.files)}
     findings.sort(key=lambda finding: place(finding, order))
     return Report(

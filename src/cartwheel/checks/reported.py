@@ -5,9 +5,11 @@ The diagnostics keep their codes. Those for which a rule gives more detail are l
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from cartwheel.checks import nodes, spelling
 from cartwheel.checks.rule import limited
@@ -15,8 +17,9 @@ from cartwheel.checks.subject import ABSENT, Subject
 from cartwheel.codes import codes_of, devices, files
 from cartwheel.codes import tags as codes
 from cartwheel.description.elements.node import Node
+from cartwheel.description.files.package_folders import stand_ins
 from cartwheel.description.model import MOMENTS
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, Origin
 
 _ELSEWHERE = frozenset({*codes_of("robot"), devices.CONTACT_COLLISION_UNKNOWN})
 """Codes of warnings for which a rule gives more detail."""
@@ -35,6 +38,8 @@ _OF_URDF = (
 _SINGLE = ("inertial", "mass", "inertia", "geometry", "axis", "limit", "dynamics", "mimic")
 """Elements of URDF that their parents contain once."""
 _ATTRIBUTES = {"mass": ("value",), "inertia": MOMENTS}
+_CALL = re.compile(r"(.+):(\d+) \S+")
+"""A call of a macro in `Origin.stack`."""
 _NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
@@ -199,3 +204,33 @@ def _is_extension(diagnostic: Diagnostic) -> bool:
 def has_place(diagnostic: Diagnostic) -> bool:
     """Whether the diagnostic is about a tag that belongs in a link or joint."""
     return diagnostic.code is codes.TAG_MISPLACED and "needs" in diagnostic.values
+
+
+def outside_stand_ins(file: str, findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The findings without those in Cartwheel's stand-ins for packages that are not installed.
+
+    No user can change a stand-in. Errors in it are kept, at the user's call.
+
+    Args:
+        file: The file that is checked. If it is a stand-in itself, all findings are kept.
+        findings: The findings.
+    """
+    own = _is_inside(file)
+    for each in findings:
+        if own or each.origin is None or not _is_inside(each.origin.file):
+            yield each
+        elif each.severity == "error" and (call := _call(each.origin)) is not None:
+            yield replace(each, origin=call, mark="", instead="", place="")
+
+
+def _is_inside(file: str) -> bool:
+    return bool(file) and Path(file).absolute().is_relative_to(stand_ins())
+
+
+def _call(origin: Origin) -> Origin | None:
+    """The innermost call of a macro in the user's files that leads to a place."""
+    for index, text in enumerate(origin.stack):
+        call = _CALL.fullmatch(text)
+        if call is not None and not _is_inside(call[1]):
+            return Origin(file=call[1], line=int(call[2]), stack=origin.stack[index + 1 :])
+    return None

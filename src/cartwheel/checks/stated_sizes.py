@@ -21,7 +21,7 @@ from cartwheel.description.solids import Floats
 from cartwheel.dialects.ros_control.parameters import SIZES
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS, SIM_TYPE
 from cartwheel.dialects.tag_roles import TagRole
-from cartwheel.errors import Code, Diagnostic, Origin, Place
+from cartwheel.errors import Origin, Place
 
 TOLERANCE = 0.02
 """Relative tolerance for tyre compression and rounded numbers."""
@@ -349,36 +349,6 @@ def _known(robot: Robot, values: Sequence[Value | None]) -> Iterator[str]:
     for value in values:
         if value is not None and value.text.strip() in robot.joints:
             yield value.text.strip()
-
-
-def size_mismatch(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
-    """The diagnostic for a stated size that differs from the real one.
-
-    Args:
-        code: Its code.
-        one: The stated size.
-        real: The size as measured in the description, m.
-        why: The real size and the consequence, as they follow "but" in the message.
-    """
-    stated = f"{one.label} is {one.value:g} m"
-    if one.factor != 1.0:
-        stated += f", times its multiplier {one.factor:g}"
-    if not one.written:
-        stated = f"{one.label} is missing and defaults to {one.value:g} m"
-    return code.diagnostic(
-        message=f"{stated}, but {why}",
-        values={
-            "tag": one.label,
-            "joint": one.first[0],
-            "stated": one.used,
-            "measured": real,
-            **one.owner,
-        },
-        origin=one.origin,
-        instead=one.write(nodes.short(round(real / one.factor, 4))) if one.factor else "",
-        place=one.place,
-        mark=one.mark,
-    )
 
 
 def differs(value: float, real: float, least: float) -> bool:

@@ -281,24 +281,17 @@ def _is_fragment(root: Node) -> bool:
     sensors or joints to command, or by the name of the parent.
     """
     missing = _missing_parents(root)
-    ends = [(each.child("parent"), each.child("child")) for each in root.all("joint")]
-    pairs = [
-        (parent.attributes.get("link", ""), child.attributes.get("link", ""))
-        for parent, child in ends
-        if parent is not None and child is not None
-    ]
-    mounts = [child for parent, child in pairs if parent in missing]
+    parents, children = (
+        [each.attributes.get("link", "") for joint in root.all("joint") for each in joint.all(end)]
+        for end in ("parent", "child")
+    )
     links = {each.attributes.get("name", "") for each in root.all("link")}
     tags = {each.tag for each in root.children}
     tags |= {each.tag for tag in root.all("gazebo") for each in tag.children}
-    if len(mounts) != 1 or not tags.isdisjoint(_OF_ROBOTS):
+    if sum(each in missing for each in parents) != 1 or not tags.isdisjoint(_OF_ROBOTS):
         return False
-    parent = next(iter(missing))
-    below, size = {mounts[0]}, 0
-    while len(below) > size:
-        size = len(below)
-        below |= {child for upper, child in pairs if upper in below}
-    return below == links and not _ROOT_LINK.match(parent) and not meant(parent, links)
+    (parent,) = missing
+    return links <= {*children} and not _ROOT_LINK.match(parent) and not meant(parent, links)
 
 
 def _mounted(texts: Mapping[Path, str], worlds: Sequence[Path]) -> Set[Path]:

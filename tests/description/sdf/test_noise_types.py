@@ -30,6 +30,7 @@ def found(kind, noise, plugin="", *, sdf=False):
     return [each for each in load_text(text).diagnostics if each.code is NOISE_TYPE_UNKNOWN]
 
 
+@pytest.mark.wording
 @pytest.mark.parametrize(
     ("kind", "plugin", "severity", "effect"),
     [

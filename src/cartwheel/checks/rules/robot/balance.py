@@ -141,7 +141,8 @@ def _tilted(robot: Robot, center: Floats, points: Floats, rest: Rest) -> Iterato
     tilts = f"so it tilts by {math.degrees(tilt):.2g}°"
     message = f"the points on which the robot rests have different heights, {tilts}"
     hint = "Check whether all wheels and casters touch the ground at the same height."
-    level = _lowest_links(robot)
+    lows = {name: low for name in robot.links if (low := lowest(robot, name)) is not None}
+    level = [name for name in lows if lows[name] <= min(lows.values()) + _FLAT * robot.size]
     extra = [name for name in on if name not in level]
     outside = _outside(points, center, robot.size, touching=_EVEN)
     if len(level) >= _LEGS and extra and outside > 0.0:
@@ -158,13 +159,6 @@ def _tilted(robot: Robot, center: Floats, points: Floats, rest: Rest) -> Iterato
         origin=robot.description.origin,
         hint=hint,
     )
-
-
-def _lowest_links(robot: Robot) -> list[str]:
-    """The links that touch level ground before the robot tilts."""
-    lows = {name: low for name in robot.links if (low := lowest(robot, name)) is not None}
-    least = min(lows.values(), default=0.0)
-    return [name for name, low in lows.items() if low <= least + _FLAT * robot.size]
 
 
 def _listed(names: Sequence[str]) -> str:

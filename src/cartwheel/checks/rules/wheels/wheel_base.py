@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.checks.rule import rule
-from cartwheel.checks.stated_sizes import LEAST, differs, mean_between, size_mismatch, stated_sizes
+from cartwheel.checks.rules.wheels.wheel_diameter import size_mismatch
+from cartwheel.checks.stated_sizes import LEAST, differs, mean_between, stated_sizes
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.errors import Diagnostic

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
-from cartwheel.checks.stated_sizes import LEAST, Stated, differs, size_mismatch, stated_sizes
+from cartwheel.checks.stated_sizes import LEAST, Stated, differs, stated_sizes
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
     is_across,
@@ -20,7 +21,7 @@ from cartwheel.checks.wheels import (
     wheel_radius,
 )
 from cartwheel.codes import robot as robot_codes
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Code, Diagnostic
 
 _LIFTED = 0.2
 """Part of its radius by which a wheel is above one behind it, from which it carries nothing."""
@@ -69,6 +70,36 @@ def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
         # No single size is right for different wheels.
         found = replace(found, instead="") if others else found
         yield replace(found, values={**found.values, "joint": joint.name})
+
+
+def size_mismatch(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
+    """The diagnostic for a stated size that differs from the real one.
+
+    Args:
+        code: Its code.
+        one: The stated size.
+        real: The size as measured in the description, m.
+        why: The real size and the consequence, as they follow "but" in the message.
+    """
+    stated = f"{one.label} is {one.value:g} m"
+    if one.factor != 1.0:
+        stated += f", times its multiplier {one.factor:g}"
+    if not one.written:
+        stated = f"{one.label} is missing and defaults to {one.value:g} m"
+    return code.diagnostic(
+        message=f"{stated}, but {why}",
+        values={
+            "tag": one.label,
+            "joint": one.first[0],
+            "stated": one.used,
+            "measured": real,
+            **one.owner,
+        },
+        origin=one.origin,
+        instead=one.write(nodes.short(round(real / one.factor, 4))) if one.factor else "",
+        place=one.place,
+        mark=one.mark,
+    )
 
 
 def wrong_size(one: Stated) -> float | None:

@@ -8,14 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from cartwheel.checks.rule import rule
-from cartwheel.checks.rules.wheels.wheel_diameter import wrong_size
+from cartwheel.checks.rules.wheels.wheel_diameter import size_mismatch, wrong_size
 from cartwheel.checks.sliding import turn_ratio, turn_with_slip
 from cartwheel.checks.stated_sizes import (
     LEAST,
     Stated,
     differs,
     mean_between,
-    size_mismatch,
     stated_sizes,
 )
 from cartwheel.checks.subject import Subject
