@@ -117,9 +117,13 @@ def test_controllers_in_gazebo_need_hardware_for_it(tmp_path, hardware, launch, 
     assert verdict.should_move is reported
 
 
-CLASSIC, GZ = "gazebo_ros2_control", "gz_ros2_control"
-SYSTEM = {CLASSIC: f"{CLASSIC}/GazeboSystem", GZ: f"{GZ}/GazeboSimSystem"}
-FILE = {CLASSIC: f"lib{CLASSIC}.so", GZ: f"{GZ}-system"}
+CLASSIC, GZ, IGN = "gazebo_ros2_control", "gz_ros2_control", "ign_ros2_control"
+SYSTEM = {
+    CLASSIC: f"{CLASSIC}/GazeboSystem",
+    GZ: f"{GZ}/GazeboSimSystem",
+    IGN: f"{IGN}/IgnitionSystem",
+}
+FILE = {CLASSIC: f"lib{CLASSIC}.so", GZ: f"{GZ}-system", IGN: f"lib{IGN}-system.so"}
 
 
 def managed(hardware, gazebo=CLASSIC):
@@ -145,7 +149,9 @@ def exported(folder, hardware, base):
     [
         (SYSTEM[CLASSIC], CLASSIC, True),
         (SYSTEM[GZ], GZ, True),
-        ("ign_ros2_control/IgnitionSystem", GZ, True),
+        (SYSTEM[IGN], GZ, True),
+        (SYSTEM[IGN], IGN, True),
+        (SYSTEM[GZ], IGN, False),
         (SYSTEM[GZ], CLASSIC, False),
         (SYSTEM[CLASSIC], GZ, False),
         (f"{GZ}/GazeboSystem", GZ, False),

@@ -30,6 +30,13 @@ SYSTEMS = tuple(MANAGERS)
 PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
 """Names of the only hardware in gazebo_ros_control."""
 _PACKAGE = "gazebo_ros_control/"
+_LOADS = {
+    "gazebo_ros2_control": (CLASSIC_SYSTEM,),
+    "gz_ros2_control": ("gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"),
+    "ign_ros2_control": ("ign_ros2_control/IgnitionSystem",),
+}
+"""By the name of a Gazebo plugin: the hardware plugins that it loads. Only gz_ros2_control, from
+ROS 2 Iron on, also knows the older name."""
 _HARDWARE = {
     "PositionJointInterface": "position",
     "VelocityJointInterface": "velocity",
@@ -199,11 +206,9 @@ def simulated_systems(description: RobotDescription) -> list[Element]:
 
 def loaded_by(description: RobotDescription) -> frozenset[str]:
     """Returns the simulated hardware that the description's plugin of ros2_control loads."""
-    names = [each.filename for each in description.plugins]
-    found = {CLASSIC_SYSTEM} if any("gazebo_ros2_control" in each for each in names) else set[str]()
-    if any(re.search(r"(gz|ign)_ros2_control", each) for each in names):
-        found.update(each for each in SYSTEMS if each != CLASSIC_SYSTEM)
-    return frozenset(found)
+    names = " ".join(each.filename for each in description.plugins)
+    found = (systems for name, systems in _LOADS.items() if re.search(rf"\b(lib)?{name}", names))
+    return frozenset(each for systems in found for each in systems)
 
 
 def ros2_control(
