@@ -231,6 +231,20 @@ def test_a_part_without_gravity_does_not_move_the_center_of_the_load(tmp_path):
     assert weak.values["upright"] == pytest.approx(9.8)
 
 
+@pytest.mark.parametrize(("mass", "moment"), [(0.001, -1.0), (0.0, 0.0)])
+def test_the_load_of_a_link_with_an_impossible_inertia_is_its_stated_mass(tmp_path, mass, moment):
+    """Only its moments are replaced, so that it can be read."""
+    tip = (
+        f'<link name="tip"><inertial><mass value="{mass}"/><inertia ixx="{moment}" iyy="{moment}" '
+        f'izz="{moment}" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="mount" '
+        'type="fixed"><parent link="beam"/><child link="tip"/><origin xyz="1 0 0"/></joint>'
+    )
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot(upright() + tip, GZ.format(p=5.0, i=0.0)))
+    (weak,) = (each for each in check(path).findings if each.code is CONTROLLER_GAIN_TOO_LOW)
+    assert weak.values["upright"] == pytest.approx(9.8 * (2.0 * 0.5 + mass))
+
+
 def test_the_gain_of_a_velocity_is_not_compared_with_gravity(tmp_path):
     path = tmp_path / "arm.urdf"
     path.write_text(robot(upright(), ""))

@@ -22,6 +22,8 @@ from cartwheel.description.inertia import impossibility
 from cartwheel.description.model import WITHOUT_POSITION
 
 _PLAIN = {"ixx": "1", "iyy": "1", "izz": "1"}
+_WEIGHTLESS = 1e-9
+"""Mass of a link whose stated mass is not positive, kg, so that sums hardly contain it."""
 
 
 def mend(root: Node) -> set[str]:
@@ -138,7 +140,10 @@ def _mend_tree(root: Node, links: set[str]) -> None:
 
 
 def _mend_inertia(link: Node) -> str:
-    """Repairs a link's inertia; returns the link's name if it was changed, otherwise ""."""
+    """Repairs a link's inertia; returns the link's name if it was changed, otherwise "".
+
+    Rules sum masses, so a positive mass is kept.
+    """
     inertial = nodes.child(link, "inertial")
     if inertial is None:
         return ""
@@ -151,7 +156,8 @@ def _mend_inertia(link: Node) -> str:
     tensor = nodes.child(inertial, "inertia")
     if tensor is not None:
         inertial.drop(tensor)
-    inertial.drop(mass)
-    inertial.children.append(Node("mass", {"value": "1"}, mass.origin))
+    if weight <= 0:
+        inertial.drop(mass)
+        inertial.children.append(Node("mass", {"value": str(_WEIGHTLESS)}, mass.origin))
     inertial.children.append(Node("inertia", _PLAIN, inertial.origin))
     return nodes.name_of(link)
