@@ -408,3 +408,29 @@ def test_controllers_that_a_distant_launch_file_starts_are_only_those_of_the_rob
     assert verdict.controllers == (("good",) if joint == "beam" else ())
     codes = [each.code for each in verdict.faults]
     assert codes == ([] if joint == "beam" else [CONTROLLERS_NOT_FOUND])
+
+
+SPAWNER = '<node pkg="controller_manager" type="spawner" name="s" args="good"/>'
+DRIVE = (
+    '<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><leftJoint>beam_joint</leftJoint>'
+    "<rightJoint>tip_joint</rightJoint></plugin>"
+)
+
+
+@pytest.mark.parametrize(
+    ("plugins", "spawner", "started"),
+    [(ROS1 + DRIVE, "", False), (ROS1 + DRIVE, SPAWNER, True), (ROS1, "", True)],
+    ids=["driven", "spawned", "only control"],
+)
+def test_controllers_of_driven_wheels_that_a_launch_file_only_loads_are_not_started(
+    model, tmp_path, plugins, spawner, started
+):
+    body = beam("beam", "world") + beam("tip", "world") + transmission("beam_joint", "Position")
+    model(
+        "",
+        launch__sim_dot_launch=STARTER.replace(STARTER.splitlines()[4], spawner),
+        robots__arm_dot_urdf=robot(body, plugins),
+        config__good_dot_yaml=ONE.format(name="good", joint="beam"),
+    )
+    verdict = try_robot(tmp_path / "arm/robots/arm.urdf", standing=0.1)
+    assert verdict.controllers == ("good",) * started

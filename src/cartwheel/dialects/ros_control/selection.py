@@ -142,7 +142,9 @@ def selection(
             namespace than that of their parameters.
     """
     starter = controllers_for(Path(robot.origin.file), use, launches)
-    named = suggested(robot, among=starter.controllers) if starter is not None else []
+    started = any(each.spawned for each in _about(robot, launches))
+    among = () if starter is None else starter.controllers
+    named = suggested(robot, among=among, started=started)
     if starter is not use and not commanding(robot, named):
         # The launch file of another part only publishes the states of all joints.
         starter, named = None, []
@@ -208,16 +210,19 @@ def _lent(
     missing -= frozenset[str]().union(*(last_names(path, robot) for path in own))
     if not missing:
         return []
-    file = Path(robot.origin.file).resolve()
     others = dict.fromkeys(
-        path
-        for each in launches
-        if each.description is None or each.description.resolve() == file
-        for path in each.controllers
-        if path not in own
+        path for each in _about(robot, launches) for path in each.controllers if path not in own
     )
     fitting = suggested(robot, among=[*itertools.islice(others, _MOST_LENT)])
     return [path for path in fitting if missing & last_names(path, robot)]
+
+
+def _about(robot: RobotDescription, launches: Sequence[LaunchUse]) -> Iterator[LaunchUse]:
+    """The launch files that load a robot's description, or none."""
+    file = Path(robot.origin.file).resolve()
+    for each in launches:
+        if each.description is None or each.description.resolve() == file:
+            yield each
 
 
 def _is_complete(path: Path, robot: RobotDescription) -> bool:

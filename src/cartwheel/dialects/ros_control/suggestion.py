@@ -42,19 +42,25 @@ _MOST = 400
 
 
 def suggested(
-    robot: RobotDescription, among: Sequence[Path] | None = None, *, within: Path | None = None
+    robot: RobotDescription,
+    among: Sequence[Path] | None = None,
+    *,
+    within: Path | None = None,
+    started: bool = True,
 ) -> list[Path]:
     """Returns the controller files near a robot whose controller manager has none.
 
     Returns nothing if the manager's tag contains an existing file. Files near the robot with
     controllers for wheels that a plugin drives are left out, because both would command the wheels.
-    Those of a launch file command them in Gazebo as well.
+    Those that a launch file starts command them in Gazebo as well.
 
     Args:
         robot: The robot.
         among: Files to choose from, such as those that a launch file loads; None: all files near
             the robot.
         within: A folder; files near the robot are used only if they are in it.
+        started: Whether a launch file may start the controllers of the files in `among`, and does
+            not only load their parameters.
     """
     driven = {
         joint
@@ -71,7 +77,7 @@ def suggested(
     managers = [tag for tag in robot.plugins if _manager(tag)]
     ros2 = _manager(managers[0]) != ROS_CONTROL
     if among is not None:
-        return with_controllers(among, movable, ros2=ros2)
+        return with_controllers(among, movable if started else joints, ros2=ros2)
     return files_for(Path(robot.origin.file), joints, ros2=ros2, within=within)
 
 
