@@ -18,7 +18,7 @@ from cartwheel.corpus.drive_causes import (
     ignored_torque,
     is_free,
 )
-from cartwheel.corpus.drive_topics import drives_on, without_other_sizes
+from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
 from cartwheel.corpus.fall_causes import (
     LEFT_OUT,
     cause_of_fall,
@@ -31,6 +31,7 @@ from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
 from cartwheel.corpus.missing_movers import (
     held_bases,
     is_started,
+    is_unmanaged,
     missing_movers,
     stopped_managers,
     unmanaged_hardware,
@@ -319,6 +320,9 @@ def _measured(
     pushed = any(drive.passes for drive in verdict.drives)
     for drive in verdict.drives:
         if pushed and not drive.passes and is_free(said, drive.topic):
+            continue
+        if is_unmanaged(controller_on(drive.topic, verdict.controllers), verdict, description):
+            # Gazebo does not move it at all, which is a fault of its own.
             continue
         forward: Diagnostic | None = None
         # A robot that fell cannot drive, nor one that its own wheels throw over.

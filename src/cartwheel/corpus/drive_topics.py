@@ -27,6 +27,12 @@ _SIZES = frozenset(
 """Findings about a size that a drive plugin or a controller states."""
 
 
+def controller_on(topic: str, controllers: Sequence[str]) -> str:
+    """The controller that receives the commands on a topic; empty if it is a plugin."""
+    space = topic.rpartition("/")[0].rpartition("/")[2]
+    return space if space in controllers else ""
+
+
 def drives_on(
     fault: Diagnostic, topic: str, description: RobotDescription, controllers: Sequence[str]
 ) -> bool:
@@ -38,9 +44,9 @@ def drives_on(
         description: The robot.
         controllers: Names of the robot's controllers, which have topics of their own.
     """
-    *spaces, name = topic.strip("/").split("/")
-    if spaces and spaces[-1] in controllers:
+    if controller_on(topic, controllers):
         return False
+    name = topic.rpartition("/")[2]
     others = managers(description, jointless=True)
     return any(
         _is_about(fault, tag) and tag not in others and name in _names(tag)
@@ -64,8 +70,7 @@ def without_other_sizes(
         description: The robot.
         controllers: Names of the robot's controllers, which have topics of their own.
     """
-    *spaces, name = topic.strip("/").split("/")
-    own = spaces[-1] if spaces and spaces[-1] in controllers else ""
+    own, name = controller_on(topic, controllers), topic.rpartition("/")[2]
     places = {
         origin
         for drive in Robot(description, None).drives

@@ -123,13 +123,14 @@ def missing_movers(
     all_moves = verdict.passes and _is_all_driven(verdict, description)
     for tag in moving_plugins(description):
         if is_known(tag):
-            reason = refused(tag) or most_severe(
+            # Why it is left out here does not matter if Gazebo does not read these tags.
+            reason = refused(tag) or other_ros(description, tag) or other_tags(description, tag)
+            reason = reason or most_severe(
                 each
                 for each in said
                 if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
                 and each.values.get("plugin") == tag.filename
             )
-            reason = reason or other_ros(description, tag) or other_tags(description, tag)
         elif all_moves and not is_own_mover(tag):
             # The report lists it among the missing plugins.
             continue
@@ -341,6 +342,14 @@ def held_bases(
                 yield short_name(str(each.values["plugin"])), each
             elif controller in verdict.controllers and is_started(controller, verdict):
                 yield controller, each
+
+
+def is_unmanaged(controller: str, verdict: Verdict, description: RobotDescription) -> bool:
+    """Whether Gazebo does not run a controller that was tested, because its manager exists only in
+    another version of ROS.
+    """
+    tags = managers(description) if controller in verdict.controllers else []
+    return bool(tags) and all(other_ros(description, tag) is not None for tag in tags)
 
 
 def is_started(controller: str, verdict: Verdict) -> bool:
