@@ -3,7 +3,7 @@
 import pytest
 
 from cartwheel.checks import check
-from cartwheel.codes.devices import FRAME_UNKNOWN, PLUGIN_PARAMETER_IGNORED
+from cartwheel.codes.devices import BODY_UNKNOWN, FRAME_UNKNOWN, PLUGIN_PARAMETER_IGNORED
 
 AMENT = "<buildtool_depend>ament_cmake</buildtool_depend>"
 CATKIN = "<buildtool_depend>catkin</buildtool_depend>"
@@ -49,6 +49,45 @@ OLD = (
 )
 def test_tags_with_capital_letters_are_those_of_ros1(ignored, depend, tags, expected):
     assert ignored(tags, depend) == expected
+
+
+@pytest.mark.parametrize(
+    ("link", "frame", "unknown"),
+    [
+        ("/front/optical", "/front/optical", False),
+        ("/front/optical", "front/optical", False),
+        ("/optical", "front/optical", False),
+        ("front/optical", "/front/optical", False),
+        ("/front/optical", "/front/optic", True),
+    ],
+)
+def test_the_slash_at_the_beginning_of_a_link_or_frame_does_not_count(
+    tmp_path, link, frame, unknown
+):
+    """As in tf2."""
+    file = tmp_path / "cart.urdf"
+    joint = (
+        f'<link name="{link}"/><joint name="j" type="fixed"><parent link="body"/>'
+        f'<child link="{link}"/></joint></robot>'
+    )
+    camera = CAMERA.format(
+        tags=f"<frameName>{frame}</frameName>", filename="libgazebo_ros_camera.so"
+    )
+    file.write_text(camera.replace("</robot>", joint))
+    assert any(each.code is FRAME_UNKNOWN for each in check(file).findings) is unknown
+
+
+@pytest.mark.parametrize(("body", "unknown"), [("/imu", False), ("/body", False), ("/i", True)])
+def test_a_plugin_finds_a_link_whose_name_begins_with_a_slash(tmp_path, body, unknown):
+    file = tmp_path / "cart.urdf"
+    robot = CAMERA.partition("<gazebo")[0]
+    file.write_text(
+        f'{robot}<link name="/imu"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" '
+        'iyy="0.1" iyz="0" izz="0.1"/></inertial></link><joint name="j" type="continuous">'
+        '<parent link="body"/><child link="/imu"/></joint><gazebo><plugin name="p" '
+        f'filename="libgazebo_ros_imu.so"><bodyName>{body}</bodyName></plugin></gazebo></robot>'
+    )
+    assert any(each.code is BODY_UNKNOWN for each in check(file).findings) is unknown
 
 
 def test_a_plugin_that_the_repository_builds_may_read_any_tags(ignored, tmp_path):

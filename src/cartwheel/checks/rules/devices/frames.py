@@ -31,8 +31,9 @@ def body_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, tag, _ in _plugins(subject):
         links = plugin_tags.links_in(tag.filename)
         for element in tag.element.children:
-            name = element.text.strip().lstrip("/")
-            if element.tag in links and name and name not in _known(robot):
+            stated = element.text.strip()
+            name = stated.lstrip("/")
+            if element.tag in links and name and _known(robot).isdisjoint((stated, name)):
                 yield _unknown(devices_codes.BODY_UNKNOWN, robot, element)
 
 
@@ -43,11 +44,13 @@ def frame_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, tag, _ in _plugins(subject):
         frames = plugin_tags.tags_with(tag.filename, "frame")
         frames -= {each.tag for each, _ in unread_tags(robot.description, tag)}
+        # tf2 removes the slash at the beginning of a frame.
+        known = {name.lstrip("/") for name in _known(robot)}
         for element in tag.element.children:
             name = element.text.strip().lstrip("/")
-            if element.tag not in frames or name in _OUTER or name in _known(robot):
+            if element.tag not in frames or name in _OUTER or name in known:
                 continue
-            if name.rpartition("/")[2] in _known(robot):
+            if name.rpartition("/")[2] in known:
                 continue  # the frame may have a prefix
             yield _unknown(devices_codes.FRAME_UNKNOWN, robot, element)
 
