@@ -61,6 +61,28 @@ def started(start: LaunchStart) -> list[tuple[str, str, str]]:
     return [(each.spawn.name, each.description.name, each.spawn.namespace) for each in start.models]
 
 
+@pytest.mark.parametrize(
+    ("written_in", "source"),
+    [
+        ('command="$(find xacro)/xacro $(find bot)/urdf/{}"', "hull"),
+        ('textfile="$(find bot)/urdf/{}"', "/one/hull"),
+    ],
+)
+def test_in_ros_1_a_spawner_names_the_parameter_with_its_description(
+    bot: Path, written_in: str, source: str
+) -> None:
+    """What no spawner names is not a description."""
+    text = f"""<launch><group ns="one">
+      <node pkg="gazebo_ros" type="spawn_model" name="s" args="-param {source} -model a"/>
+      <param name="spare" {written_in.format("bot.xacro")}/>
+      <param name="hull" {written_in.format("other.urdf")}/></group>
+      <node pkg="gazebo_ros" type="other" name="hull"><param name="hull" textfile="no.urdf"/></node>
+    </launch>"""
+    start = read_launch(written(bot, "a.launch", text), {})
+    assert started(start) == [("a", "other.urdf", "one")]
+    assert not start.diagnostics
+
+
 def test_a_namespace_in_xml_for_ros_2(bot: Path) -> None:
     text = """<launch><group><push_ros_namespace namespace="one"/>
       <node pkg="gazebo_ros" exec="spawn_entity.py" namespace="$(var space)"

@@ -130,6 +130,7 @@ def facts_of(
         reversed=others,
     )
     _read(path, arguments, facts, 0)
+    facts.read_spawned()
     return facts
 
 

@@ -70,6 +70,8 @@ class Facts:
     published: dict[str, int] = field(default_factory=dict)
     """The number of a description, by the parameter or topic that contains it; `ABSENT` if it was
     not found."""
+    unread: dict[str, Callable[[], int | None]] = field(default_factory=dict)
+    """What adds the contents of a parameter that contains a description if a spawner names it."""
     namespace: str = ""
     """The namespace of the group that is being read."""
     yamls: list[tuple[str, Path]] = field(default_factory=list)
@@ -208,6 +210,13 @@ class Facts:
         key = resolved(self.namespace, name)
         if number is not None and (number != ABSENT or key not in self.published):
             self.published[key] = number
+
+    def read_spawned(self) -> None:
+        """Adds the descriptions in the parameters that spawners name, whatever their names."""
+        for spawn in self.spawns:
+            read = self.unread.pop(spawn.source, None)
+            if read is not None:
+                self.store_parameter(f"/{spawn.source}", read())
 
     def store_topic(self, space: str, number: int | None) -> None:
         """Stores which description a robot_state_publisher publishes; the first one counts."""

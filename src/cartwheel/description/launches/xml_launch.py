@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -161,13 +162,19 @@ class _Reader:
             facts.parameters(self._value(node, "from"))
         parameter = self._value(node, "name")
         if not parameter.endswith("description"):
+            stated = next((name for name in ("command", "textfile") if name in node.attributes), "")
+            if stated and not self._inside_node:
+                key = resolved(facts.namespace, parameter)
+                facts.unread[key] = partial(self._described, node, stated)
             return
         for name in ("command", "textfile", "value"):
             value = node.attributes.get(name, "")
             if value and (name != "value" or "command" in value):
-                facts.store_parameter(
-                    parameter, facts.describe(self._value(node, name), node.origin)
-                )
+                facts.store_parameter(parameter, self._described(node, name))
+
+    def _described(self, node: Node, name: str) -> int | None:
+        """Adds the description that an attribute states; its number as for `Facts.describe`."""
+        return self._facts.describe(self._value(node, name), node.origin)
 
     def _holds(self, node: Node) -> bool:
         """Whether the conditions of an element hold. An unknown condition holds."""
