@@ -161,6 +161,7 @@ SENSORS = {
     "magnetometer": "gz.sensors.magnetometer",
     "navsat": "gz.sensors.navsat",
     "ray": "gz.lidar",
+    "rgbd": "gz.camera",
     "rgbd_camera": "gz.camera",
 }
 """The module of the plugin for sensors without a ``<plugin>``, by sensor type."""

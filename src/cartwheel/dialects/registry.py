@@ -141,7 +141,7 @@ def _serve(
             # The diagnostic about the unsupported plugin also covers the sensor.
             continue
         reason = (
-            (f', and sensors of type "{sensor.type}" publish nothing without a plugin')
+            (f', and sensors of type "{sensor.type}" are not simulated without one')
             if wanted
             else ""
         )

@@ -69,6 +69,32 @@ def test_new_gazebos_sensors(make, kind, topics):
     np.testing.assert_allclose(cloud["z"][seen], (-down * expected)[seen], rtol=1e-3, atol=1e-4)
 
 
+@pytest.mark.parametrize("kind", ["rgbd", "rgbd_camera"])
+def test_both_spellings_of_a_type_publish_the_same(make, kind):
+    world = make.world(make.sdf(sensor(kind=kind, filename="")))
+    base = "/world/test/model/cam_eye/link/link/sensor/cam"
+    names = ("image", "image/compressed", "depth_image", "points", "camera_info")
+    assert {name for name in topic_names(world) if name.startswith(base)} == {
+        f"{base}/{name}" for name in names
+    }
+    assert take(world, f"{base}/image").encoding == "rgb8"
+
+
+@pytest.mark.parametrize(
+    ("kind", "system"),
+    [
+        *((kind, False) for kind in ("thermal", "thermal_camera", "segmentation", "boundingbox")),
+        # Gazebo Classic has this type too.
+        ("wideanglecamera", True),
+    ],
+)
+def test_cameras_of_gz_that_are_not_simulated_are_reported(make, kind, system):
+    plugin = '<plugin name="s" filename="gz-sim-sensors-system"/>' if system else ""
+    model = sensor(kind=kind, filename="").replace("</model>", f"{plugin}</model>")
+    (warning,) = coded(make.world(make.sdf(model)), devices.SENSOR_WITHOUT_PLUGIN, type=kind)
+    assert warning.severity == "warning"
+
+
 def test_a_camera_without_plugin_has_new_gazebos_name_where_it_states_none(make):
     model = sensor(kind="rgbd_camera", filename="")
     world = make.world(make.sdf(model))

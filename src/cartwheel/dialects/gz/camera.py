@@ -21,6 +21,7 @@ from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag
 
 _DEPTHS = ("depth_camera", "depth")
+_COLOURED_DEPTHS = ("rgbd_camera", "rgbd")
 _SHORTEST = 1e-3
 """Minimum focal length, pixels; with a shorter one, an image shows a single point."""
 
@@ -92,12 +93,11 @@ class GzCamera(GzSensor[GzCameraParameters]):
 
     empty_is_model: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "camera"
-    serves: ClassVar[tuple[str, ...]] = ("camera", "rgbd_camera", *_DEPTHS)
+    serves: ClassVar[tuple[str, ...]] = ("camera", *_COLOURED_DEPTHS, *_DEPTHS)
 
     def configure(self) -> None:
         config, sensor = self.config, read_camera(self, self.sensor, pinhole=True)
-        last = {"camera": "image", "rgbd_camera": ""}.get(sensor.type, "depth_image")
-        topic = self.topic(last)
+        topic = self.topic(_last(sensor))
         trigger = gz_spelling(config.trigger_topic) or f"{topic}/trigger"
         device = CameraConfig(
             name=sensor.name,
@@ -111,7 +111,7 @@ class GzCamera(GzSensor[GzCameraParameters]):
         self.add(Camera(self.scope, device))
 
     def _imager(self, sensor: Sensor, topic: str) -> ImagerConfig:
-        around = topic if sensor.type == "rgbd_camera" else topic.rpartition("/")[0]
+        around = topic if sensor.type in _COLOURED_DEPTHS else topic.rpartition("/")[0]
         camera = sensor.cameras[0]
         stated = self._usable(camera.pinhole, camera.width, "intrinsics")
         rendered = self._usable(camera.projection, camera.width, "projection") or stated
@@ -127,7 +127,7 @@ class GzCamera(GzSensor[GzCameraParameters]):
             format=image_format,
             calibration=calibration,
             frame=self.frame_id,
-            image_topic={"camera": topic, "rgbd_camera": f"{topic}/image"}.get(sensor.type, ""),
+            image_topic=_image_topic(sensor, topic),
             info_topic=gz_spelling(self.config.info_topic)
             or (f"{around}/camera_info" if around else "camera_info"),
             set_info=False,
@@ -160,6 +160,20 @@ class GzCamera(GzSensor[GzCameraParameters]):
             beyond="inf",
             optical=False,
         )
+
+
+def _last(sensor: Sensor) -> str:
+    """The end of the default topic; empty if the topic is the prefix of several topics."""
+    if sensor.type in _COLOURED_DEPTHS:
+        return ""
+    return "depth_image" if sensor.type in _DEPTHS else "image"
+
+
+def _image_topic(sensor: Sensor, topic: str) -> str:
+    """The topic of the images; empty for a sensor without images."""
+    if sensor.type in _COLOURED_DEPTHS:
+        return f"{topic}/image"
+    return "" if sensor.type in _DEPTHS else topic
 
 
 def _view(pinhole: Pinhole, width: int) -> float:

@@ -20,10 +20,15 @@ SYSTEMS = {
         "camera",
         "depth",
         "depth_camera",
+        "rgbd",
         "rgbd_camera",
+        "thermal",
         "thermal_camera",
+        "wideanglecamera",
         "wide_angle_camera",
+        "segmentation",
         "segmentation_camera",
+        "boundingbox",
         "boundingbox_camera",
         "gpu_lidar",
         "gpu_ray",
@@ -40,15 +45,19 @@ SYSTEMS = {
     "gz-sim-air-speed-system": ("air_speed",),
     "gz-sim-forcetorque-system": ("force_torque",),
 }
-"""Sensor types that each system enables. A system has no other effect: Cartwheel's plugins
-serve the types themselves.
+"""Sensor types that each system enables, in both spellings of sdformat. A system has no other
+effect: Cartwheel's plugins serve the types themselves.
 """
 
 _CONTROL = ("gz_ros2_control-system", "ign_ros2_control-system")
 _NEW_TYPES = {
+    "rgbd",
     "rgbd_camera",
+    "thermal",
     "thermal_camera",
+    "segmentation",
     "segmentation_camera",
+    "boundingbox",
     "boundingbox_camera",
     "gpu_lidar",
     "lidar",

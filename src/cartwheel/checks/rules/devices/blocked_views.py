@@ -19,7 +19,9 @@ from cartwheel.description.solids import Floats, Solid, first_hits, moved
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose, matrix_from_quat
 
-CAMERAS = ("camera", "depth", "depth_camera", "rgbd_camera", "multicamera", "wideanglecamera")
+CAMERAS = (
+    "camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "multicamera", "wideanglecamera",
+)  # fmt: skip
 LASERS = ("ray", "gpu_ray", "lidar", "gpu_lidar")
 BLOCKED = 0.6
 """Maximum fraction of blocked rays: a robot may see its bumper or mast, but not only itself."""
