@@ -11,6 +11,7 @@ from functools import cache
 
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.catalogue import all_plugins, plugin_named, plugin_names, short_name
+from cartwheel.dialects.remappings import namespace_of, remappings
 from cartwheel.dialects.tag_roles import WHEEL_ROLES, Role, TagRole
 from cartwheel.dialects.tags import default_joints as default_joints_of
 from cartwheel.dialects.tags import read, roles_of, spellings_of, tags_of
@@ -113,3 +114,24 @@ def roles(filename: str) -> tuple[TagRole, ...]:
 
 def _is_of_wheels(role: TagRole) -> bool:
     return role.role.startswith(("left_wheel", "right_wheel", "wheel_"))
+
+
+def command_topic(tag: PluginTag) -> str:
+    """The topic of a plugin's commands, in the namespace that its tags state.
+
+    Plugins of one robot with the same result receive the same commands. Empty for a plugin that
+    Cartwheel does not simulate, and for one that is no drive.
+    """
+    if plugin_named(tag.filename) is None:
+        return ""
+    for role in roles_with(tag.filename, "command_topic"):
+        stated = next((each for name in role.tags if (each := tag.element.find(name))), None)
+        default = next((str(each) for each in role.default), "")
+        name = stated.text.strip() if stated is not None else default
+        name = remappings(tag).get(name, name)
+        space = namespace_of(tag)
+        if space is None and (plain := tag.element.find("robotNamespace")) is not None:
+            space = plain.text.strip()
+        parts = ("" if name.startswith("/") else space or "", name or "cmd_vel")
+        return "/" + "/".join(each.strip("/") for each in parts if each.strip("/"))
+    return ""

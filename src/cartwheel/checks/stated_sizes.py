@@ -63,6 +63,8 @@ class Stated:
     place: Place
     controller: str = ""
     """The name of the controller that states it; empty if it is a plugin."""
+    topic: str = ""
+    """The topic of the commands of the plugin that states it; empty if it is unknown."""
 
     @property
     def used(self) -> float:
@@ -199,6 +201,7 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
             first=joints[0],
             second=joints[1],
             skids=len(joints[0]) > 1,
+            topic=plugin_tags.command_topic(tag),
             origin=element.origin,
             mark=element.text.strip(),
             write=lambda number, name=name: nodes.written(name, {}, number),  # type: ignore[misc]
@@ -216,6 +219,7 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
             first=joints[0],
             second=joints[1],
             skids=len(joints[0]) > 1,
+            topic=plugin_tags.command_topic(tag),
             origin=tag.origin,
             mark=tag.filename,
             write=lambda number: nodes.written(name, {}, number),

@@ -28,7 +28,7 @@ def wheel_diameter(*names: str, default: float) -> Any:
 
 def command_topic(*names: str) -> Any:
     """The topic of the commands."""
-    return tag(*names, default="cmd_vel", doc="Topic of the Twist commands.")
+    return tag(*names, default="cmd_vel", role="command_topic", doc="Topic of the Twist commands.")
 
 
 def odometry_topic(*names: str) -> Any:

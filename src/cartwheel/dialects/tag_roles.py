@@ -26,6 +26,7 @@ Role = Literal[
     "odometry_frame",
     "rate",
     "topic",
+    "command_topic",
     "namespace",
     "tcp_port",
     "udp_port",
@@ -42,6 +43,7 @@ Role = Literal[
 - ``rate``: how often per second the plugin does something.
 - ``topic``: a topic on which the plugin publishes; ``namespace``: the first part of its name,
   which defaults to the plugin's name.
+- ``command_topic``: the topic on which a drive plugin receives its commands.
 - ``tcp_port``, ``udp_port``: a port that the plugin opens.
 """
 WHEEL_ROLES: tuple[Role, ...] = ("left_wheel", "right_wheel", "left_wheels", "right_wheels")

@@ -33,7 +33,10 @@ _UNITS = {
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzDriveParameters:
     topic: str = tag(
-        "topic", default="", doc="Topic of the Twist commands. Default: `/model/<model>/cmd_vel`."
+        "topic",
+        default="",
+        role="command_topic",
+        doc="Topic of the Twist commands. Default: `/model/<model>/cmd_vel`.",
     )
     odom_topic: str = tag(
         "odom_topic", default="", doc="Topic of the odometry. Default: `/model/<model>/odometry`."

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from cartwheel.checks.rule import rule
+from cartwheel.checks.rules.wheels.united_drives import united
 from cartwheel.checks.rules.wheels.wheel_diameter import size_mismatch, wrong_size
 from cartwheel.checks.sliding import turn_ratio, turn_with_slip
 from cartwheel.checks.stated_sizes import (
@@ -47,8 +48,9 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
             apart, joints = (
                 (each + mean_between(one, beside=False)) / 2 for each in (apart, joints)
             )
-        slides = one.skids and not any(one.steered_by(other) for other in sizes)
-        if slides and min(apart, joints) <= one.used <= _widest(one, apart):
+        whole = united(one, sizes)
+        slides = whole.skids and not any(one.steered_by(other) for other in sizes)
+        if slides and min(apart, joints) <= one.used <= _widest(whole, apart):
             # Such a robot needs a larger value, which a multiplier may contribute.
             continue
         if differs(one.used, apart, LEAST):
@@ -131,7 +133,7 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
     sizes = list(stated_sizes(subject))
     # Steered and mecanum wheels, whose drives also state a wheel base, do not slide.
     others = {id(one.robot) for one in sizes if one.measure in ("base", "reach")}
-    for one in sizes:
+    for one in (united(each, sizes) for each in sizes):
         if one.measure != "apart" or id(one.robot) in others:
             continue
         left, right = (_with_followers(one, side) for side in (one.first, one.second))
