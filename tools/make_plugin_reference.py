@@ -49,7 +49,8 @@ Gazebo whose tags and topics Cartwheel supports. The following rules apply to al
 - Unsupported tags are reported with file and line.
 - The namespace in `<robotNamespace>` or `<ros><namespace>` is added in front of every topic and
   service name that does not begin with `/`. `<ros><remapping>` renames topics and services, as
-  does `<ros><argument>~/out:=scan</argument>`, the form before `--ros-args`.
+  does `<ros><argument>~/out:=scan</argument>`, the form before `--ros-args`. The plugins of
+  ros2_control do not read `<robotNamespace>`.
 - In names such as `/model/<model>/cmd_vel`, the words `<model>`, `<world>`, `<link>`, `<joint>` and
   `<sensor>` stand for the names of these elements. A tag of the plugin, such as `<topic>`, stands
   for its value.

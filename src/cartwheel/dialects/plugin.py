@@ -61,6 +61,8 @@ class Plugin(Component, Generic[C]):
     """Whether a plugin of models may also be directly inside a ``<world>``."""
     empty_is_model: ClassVar[bool] = False
     """Whether an empty ``<robotNamespace>`` selects the model's name instead of no namespace."""
+    reads_robot_namespace: ClassVar[bool] = True
+    """Whether ``<robotNamespace>`` selects the namespace, as in ROS 1."""
     prefixes_by_namespace: ClassVar[bool] = False
     """Whether frame IDs are prefixed with the namespace if there is no ``tf_prefix``."""
     serves: ClassVar[tuple[str, ...]] = ()
@@ -127,7 +129,7 @@ class Plugin(Component, Generic[C]):
         frame_prefix = part.frame_prefix
         if ros is not None:
             namespace = ros
-        elif plain is not None:
+        elif plain is not None and self.reads_robot_namespace:
             namespace = plain.text.strip() or (part.name if self.empty_is_model else "")
         if ros is None and self.prefixes_by_namespace and not frame_prefix:
             frame_prefix = namespace

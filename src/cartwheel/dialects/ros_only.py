@@ -59,6 +59,8 @@ _REQUIRED: Mapping[str, tuple[tuple[str, str], ...]] = {
 
 _ROS_PACKAGE = "gazebo_ros_"
 """Beginning of the names of gazebo_ros_pkgs' plugins."""
+_ROS2_CONTROL = ("gazebo_ros2_control", "gz_ros2_control-system", "ign_ros2_control-system")
+"""Plugins of ros2_control, whose tags contain no capital letters either."""
 _PACKAGES, _BYTES = 200, 100_000
 """Packages of a repository whose CMakeLists.txt is searched, and bytes of each file."""
 
@@ -128,12 +130,14 @@ def other_tags(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:
 def unread_tags(robot: RobotDescription, tag: PluginTag) -> Iterator[tuple[Element, str]]:
     """The tags of a plugin that only ROS 1 reads, each with what to write in ROS 2.
 
-    None unless the plugin is one of gazebo_ros_pkgs for ROS 2, whose tags contain no capital
-    letters, by the package of the robot or, if that is unknown, by its ``<ros>`` element.
+    None unless the plugin is one of ros2_control, or of gazebo_ros_pkgs for ROS 2, by the package
+    of the robot or, if that is unknown, by its ``<ros>`` element. Their tags contain no capital
+    letters.
     """
     name, file = short_name(tag.filename), Path(robot.origin.file)
     plugin = plugin_named(tag.filename)
-    if ros_of(file, tag) != 2 or plugin is None or not name.startswith(_ROS_PACKAGE):
+    of_ros2 = name.startswith(_ROS_PACKAGE) and ros_of(file, tag) == 2
+    if plugin is None or not (of_ros2 or name in _ROS2_CONTROL):
         return
     if name in _REPLACEMENTS[1]:
         return

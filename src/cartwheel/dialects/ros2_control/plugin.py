@@ -95,11 +95,14 @@ class Ros2Control(ControlPlugin):
         "ign_ros2_control-system",
     )
     parameters: ClassVar[type] = Ros2ControlParameters
+    reads_robot_namespace: ClassVar[bool] = False
 
     def configure(self) -> None:
         config: Ros2ControlParameters = self.config
         part = self.part
         self.namespace = self.namespace.strip("/")
+        if self.tag.element.find("robotNamespace") is not None:
+            self.warn_ignored("robotNamespace", "the plugin reads only <ros><namespace>")
         files = self.shared.get(ControllerFiles)
         own = files.take()
         stated = config.files if without_parameters(self.tag) is None else ()

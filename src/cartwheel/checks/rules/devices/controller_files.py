@@ -75,10 +75,7 @@ def _unusable(
         except PluginError as error:
             yield error.diagnostic()
             return
-    space = namespace_of(tag)
-    if space is None:
-        plain = tag.element.find("robotNamespace")
-        space = "" if plain is None else plain.text
+    space = namespace_of(tag) or ""
     stated = (tag.element.find(f"controller_manager{each}") for each in ("_name", "_node_name"))
     name = next((each.text.strip() for each in stated if each is not None), "controller_manager")
     merged = ros2_file([content for _, content in contents], space.strip(), name)
