@@ -719,7 +719,7 @@ def test_a_robot_without_controllers_does_not_move_with_any_hardware(tried):
     ("kind", "gains", "error"),
     [
         # Its weight over the gain.
-        ("position", {"pos_kp": 100, "pos_ki": 1, "pos_kd": 10}, 9.8 / 100),
+        ("position", {"pos_kp": 600, "pos_ki": 1, "pos_kd": 10}, 9.8 / 600),
         # The integral has reduced it by a half to a third while it is measured.
         ("velocity", {"vel_kp": 10, "vel_ki": 10, "vel_kd": 0.1}, 0.15),
     ],

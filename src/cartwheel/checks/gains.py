@@ -59,17 +59,22 @@ def gain_too_low(
         of_velocity: Whether it is the gain of a velocity, in N m s/rad or N s/m.
         place: More arguments of the diagnostics.
     """
-    stated = _Stated(joint, gain, origin, place)
-    if integral * SLOW < gain:
-        yield from _is_stuck(stated)
-        yield from _cannot_hold(robot, stated)
-        load = None if of_velocity else _pendulum(robot, joint)
-        if load is not None and gain > 0.0 and not joint.axis.spring_stiffness:
-            yield from _hangs(stated, *load)
-            yield from _drops(stated, *load)
-            yield from _tips(robot, stated)
+    stated, found = _Stated(joint, gain, origin, place), list[Diagnostic]()
+    free = gain > 0.0 and not of_velocity and not joint.axis.spring_stiffness
+    weak = integral * SLOW < gain
+    if weak:
+        found += _is_stuck(stated)
+        found += _cannot_hold(robot, stated)
+        load = _pendulum(robot, joint) if free else None
+        if load is not None:
+            found += _hangs(stated, *load)
+            found += _drops(stated, *load)
+            found += _tips(robot, stated)
     if not of_velocity:
-        yield from _falls_over(robot, stated)
+        found += _falls_over(robot, stated)
+    if not found and weak and free:
+        found += _sags(robot, stated)
+    yield from found
 
 
 def upright_stiffness(robot: Robot, joint: Joint) -> float:
@@ -209,11 +214,7 @@ def _is_stuck(stated: _Stated) -> Iterator[Diagnostic]:
 def _cannot_hold(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
     """The finding that a gain does not hold the weight on a sliding joint."""
     joint, gain = stated.joint, stated.gain
-    way, weight = span(joint), 0.0
-    if way is not None and gain > 0.0 and joint.child in robot.placed:
-        upward = abs(float(wheel_axis(robot, joint)[2]))
-        load = _loads(robot).get(joint.child)
-        weight = _GRAVITY * upward * load.mass if load is not None else 0.0
+    way, weight = span(joint), abs(_pull(robot, joint))
     if way is None or gain <= 0.0 or weight / gain <= way:
         return
     yield from stated.too_low(
@@ -223,6 +224,49 @@ def _cannot_hold(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
         weight / way,
         weight=weight,
     )
+
+
+def _sags(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
+    """The finding that a joint sags from where it starts, further than the usual way of a test."""
+    joint = stated.joint
+    turns = _pendulum(robot, joint)
+    if turns is not None:
+        left, stiffness = turns
+        way, towards, load = ANGLE, -left, stiffness * math.sin(abs(left))
+        # Between both angles, gravity's torque is larger than at one of them.
+        least = min(load, stiffness * math.sin(abs(left) + way))
+    else:
+        way, towards = LENGTH, _pull(robot, joint)
+        least = load = abs(towards)
+    held = stated.gain * way + joint.axis.friction >= least or _room(joint, towards) <= way
+    if held or joint.mimic is not None:
+        return
+    effort, length = stated.units
+    yield from stated.too_low(
+        f'lets joint "{joint.name}" sag by more than {way:g} {length}: its load is '
+        f"{load:.3g} {effort} where it starts",
+        load / way,
+        load=load,
+    )
+
+
+def _pull(robot: Robot, joint: Joint) -> float:
+    """The weight on a sliding joint with limits along its axis, N; negative towards the lower
+    limit.
+    """
+    if span(joint) is None or joint.child not in robot.placed:
+        return 0.0
+    load = _loads(robot).get(joint.child)
+    return -_GRAVITY * float(wheel_axis(robot, joint)[2]) * load.mass if load is not None else 0.0
+
+
+def _room(joint: Joint, direction: float) -> float:
+    """Distance from where a joint starts to its limit in a direction, rad or m."""
+    lower, upper = joint.axis.lower, joint.axis.upper
+    if joint.type == "continuous" or lower is None or upper is None:
+        return math.inf
+    start = min(max(0.0, lower), upper)
+    return upper - start if direction > 0 else start - lower
 
 
 def _falls_over(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:

@@ -14,6 +14,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import axle_of, wheel_links, wheel_radius, wheel_tread
 from cartwheel.codes import devices
 from cartwheel.corpus import commands, motion
+from cartwheel.corpus.verdict import Reach
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.joint_controller import (
@@ -77,6 +78,48 @@ def too_weak(
         gains: The gains that `weak_gains` returns.
         joints: The joints of interest.
     """
+    places = _places(robot, started)
+    described = Robot(robot, None)
+    fast = motion.commanded_speeds(started)
+    for name in joints:
+        joint = robot.joint(name)
+        if joint is not None and name in gains:
+            place = places.get(name, joint.origin)
+            yield from gain_too_low(described, joint, gains[name], place, of_velocity=name in fast)
+
+
+def sagged(
+    robot: RobotDescription,
+    started: Sequence[Controller],
+    gains: Mapping[str, float],
+    reached: Iterable[Reach],
+) -> Iterator[Diagnostic]:
+    """Joints that sag far from their targets, because their proportional gains are low.
+
+    Args:
+        robot: The description.
+        started: The controllers that run.
+        gains: The gains that `weak_gains` returns.
+        reached: Where the joints ended.
+    """
+    places = _places(robot, started)
+    for reach in reached:
+        if not reach.sags or reach.joint not in gains:
+            continue
+        joint, gain = robot.joint(reach.joint), gains[reach.joint]
+        unit, effort = ("rad", "N m") if reach.angular else ("m", "N")
+        yield devices.CONTROLLER_GAIN_TOO_LOW.diagnostic(
+            f"with the proportional gain of {gain:g} {effort}/{unit}, joint "
+            f'"{reach.joint}" ends at {reach.reached:.3g} {unit} instead of {reach.target:.3g} '
+            f"{unit}, because of its load and its friction",
+            values={"joint": reach.joint, "gain": gain, "error": reach.error},
+            origin=places.get(reach.joint, robot.origin if joint is None else joint.origin),
+            hint="Use a higher proportional gain, or an integral gain.",
+        )
+
+
+def _places(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, Origin]:
+    """Where the gains of joints are stated, by joint."""
     places = {
         name: Origin(file=controller.settings.source)
         for controller in started
@@ -87,13 +130,7 @@ def too_weak(
         if plugin_named(tag.filename) is JointPositionController:
             named = {each.text.strip() for each in tag.element.find_all("joint_name")}
             places |= dict.fromkeys(named, tag.origin)
-    described = Robot(robot, None)
-    fast = motion.commanded_speeds(started)
-    for name in joints:
-        joint = robot.joint(name)
-        if joint is not None and name in gains:
-            place = places.get(name, joint.origin)
-            yield from gain_too_low(described, joint, gains[name], place, of_velocity=name in fast)
+    return places
 
 
 def undamped(

@@ -16,7 +16,7 @@ from cartwheel.corpus.fall_causes import has_devices
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flying.flights import flights
 from cartwheel.corpus.flying.thrusters import bursts, thrusts
-from cartwheel.corpus.gains import too_weak, too_weak_to_turn, undamped, weak_gains
+from cartwheel.corpus.gains import sagged, too_weak, too_weak_to_turn, undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.listening import LISTENING, controlled_sides, controllers_of, idle, listened
 from cartwheel.corpus.movers import STEERED, movers
@@ -329,7 +329,11 @@ def _joints_moved(
     verdict = replace(verdict, reaches=tuple(reached))
     late = {each.joint for each in reached if not each.arrived}
     held |= late & blocked(world, model, Robot(robot, None)) if late else late
-    springs = (*undamped(robot, started, late), *too_weak(robot, started, gains, sorted(late)))
+    springs = (
+        *undamped(robot, started, late),
+        *sagged(robot, started, gains, reached),
+        *too_weak(robot, started, gains, sorted(late)),
+    )
     verdict = replace(verdict, observed=tuple(dict.fromkeys((*verdict.observed, *springs))))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))

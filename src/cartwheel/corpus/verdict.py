@@ -28,6 +28,8 @@ MOVED = 0.1
 """Smallest part of the commanded way or speed at which a joint moves."""
 ANGLE, LENGTH = 0.1, 0.01
 """rad and m; maximum error of a joint position: a PID with effort output yields to gravity."""
+_SAGGED = 2.0
+"""The same relative to these, if the controller's own gains explain it."""
 SHORT = 0.5
 """The same relative to the way, which limits shorten."""
 
@@ -171,17 +173,31 @@ class Reach:
 
     @property
     def arrived(self) -> bool:
-        """Whether it moved, with a small error, or one that follows from gravity and the gains."""
+        """Whether it moved, with a small error, or a moderate one that follows from gravity and the
+        gains.
+        """
+        return self._follows and abs(self.error) <= _SAGGED * self._longest
+
+    @property
+    def sags(self) -> bool:
+        """Whether it moved, with a large error that follows from gravity and the gains."""
+        return self._follows and not self.arrived
+
+    @property
+    def _follows(self) -> bool:
         return self.moved and abs(self.error) <= self.limit + self.sag
 
     @property
     def limit(self) -> float:
         """Maximum error without a load, rad or m."""
-        longest = ANGLE if self.angular else LENGTH
         if self.start is None:
-            return longest
+            return self._longest
         # Half of a way of 0.2 rad is not exactly 0.1 rad.
-        return min(longest, SHORT * abs(self.target - self.start) * (1.0 + 1e-9))
+        return min(self._longest, SHORT * abs(self.target - self.start) * (1.0 + 1e-9))
+
+    @property
+    def _longest(self) -> float:
+        return ANGLE if self.angular else LENGTH
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -131,6 +131,7 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
                 "joint": each.joint,
                 "target": each.target,
                 "reached": each.reached,
+                "sag": each.sag,
             }
             for each in verdict.reaches
         ],
