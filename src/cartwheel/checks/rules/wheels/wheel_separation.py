@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from cartwheel.checks.rule import rule
-from cartwheel.checks.rules.wheels.united_drives import united
 from cartwheel.checks.rules.wheels.wheel_diameter import size_mismatch, wrong_size
 from cartwheel.checks.sliding import turn_ratio, turn_with_slip
 from cartwheel.checks.stated_sizes import (
@@ -23,6 +22,7 @@ from cartwheel.checks.tracks import sliding_tracks
 from cartwheel.checks.wheels import axle_of, wheel_place
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
+from cartwheel.description.solids import Floats
 from cartwheel.errors import Diagnostic
 
 WIDEST_SKID = 2.5
@@ -48,7 +48,7 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
             apart, joints = (
                 (each + mean_between(one, beside=False)) / 2 for each in (apart, joints)
             )
-        whole = united(one, sizes)
+        whole = _united(one, sizes)
         slides = whole.skids and not any(one.steered_by(other) for other in sizes)
         if slides and min(apart, joints) <= one.used <= _widest(whole, apart):
             # Such a robot needs a larger value, which a multiplier may contribute.
@@ -133,7 +133,7 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
     sizes = list(stated_sizes(subject))
     # Steered and mecanum wheels, whose drives also state a wheel base, do not slide.
     others = {id(one.robot) for one in sizes if one.measure in ("base", "reach")}
-    for one in (united(each, sizes) for each in sizes):
+    for one in (_united(each, sizes) for each in sizes):
         if one.measure != "apart" or id(one.robot) in others:
             continue
         left, right = (_with_followers(one, side) for side in (one.first, one.second))
@@ -229,3 +229,56 @@ def _places(one: Stated) -> list[float]:
         for name in one.first + one.second
         if (joint := one.robot.joints[name]).child in one.robot.placed
     ]
+
+
+def _united(one: Stated, sizes: Sequence[Stated]) -> Stated:
+    """A wheel separation with the wheels of all plugins that turn the robot at the same rate.
+
+    A plugin for each axle moves the robot as one plugin for all wheels does.
+
+    Args:
+        one: The stated separation.
+        sizes: All stated sizes.
+
+    Returns:
+        `one` itself if its plugin drives alone, or if the plugins share wheels or contradict each
+        other.
+    """
+    if one.measure != "apart" or not one.topic:
+        return one
+    drives = [
+        each
+        for each in sizes
+        if each.robot is one.robot and each.measure == "apart" and each.topic == one.topic
+    ]
+    first, second = (
+        tuple(name for each in drives for name in getattr(each, side))
+        for side in ("first", "second")
+    )
+    wheels = (*first, *second)
+    across = _across(one)
+    if (
+        len(drives) < 2
+        or len(set(wheels)) < len(wheels)
+        or any(differs(each.used, one.used, LEAST) for each in drives)
+        or any(float(_across(each) @ across) <= 0 for each in drives)
+    ):
+        return one
+    return replace(one, first=first, second=second, skids=True)
+
+
+def _across(one: Stated) -> Floats:
+    """From the second wheels to the first ones along the axle, m, shape (3,)."""
+    sides = [
+        [
+            wheel_place(one.robot, joint).position
+            for name in names
+            if (joint := one.robot.joints[name]).child in one.robot.placed
+        ]
+        for names in (one.first, one.second)
+    ]
+    if not all(sides):
+        return np.zeros(3)
+    axle = axle_of(one.robot, one.first, one.second, beside=True)
+    between = np.mean(sides[0], axis=0) - np.mean(sides[1], axis=0)
+    return np.asarray(axle * float(axle @ between), dtype=np.float64)
