@@ -64,12 +64,17 @@ def idle_settings(descriptions: Iterable[RobotDescription]) -> Iterator[Diagnost
             _of_link(link, description, note)
         _of_joints(description, note)
     for what, (origin, count, why) in found.items():
-        times = f" ({count} times)" if count > 1 else ""
-        yield PHYSICS_SETTING_IGNORED.diagnostic(
-            f"{what} has no effect{times}: {why}",
-            origin=origin,
-            values={"setting": what, "count": count},
-        )
+        yield without_effect(what, origin, count, why)
+
+
+def without_effect(what: str, origin: Origin, count: int, why: str) -> Diagnostic:
+    """The note for a setting that occurs `count` times, for the first time at `origin`."""
+    times = f" ({count} times)" if count > 1 else ""
+    return PHYSICS_SETTING_IGNORED.diagnostic(
+        f"{what} has no effect{times}: {why}",
+        origin=origin,
+        values={"setting": what, "count": count},
+    )
 
 
 def _of_link(link: Link, description: RobotDescription, note: _Note) -> None:

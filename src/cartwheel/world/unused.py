@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from cartwheel.codes import tags
-from cartwheel.codes import world as world_codes
-from cartwheel.description.idle_settings import idle_settings
+from cartwheel.description.idle_settings import idle_settings, without_effect
 from cartwheel.description.meshes import known_size, load_mesh, standing_parts
 from cartwheel.description.model import Mesh, RobotDescription
 from cartwheel.description.paint import paint_of
@@ -31,15 +30,8 @@ def _surfaces_as_hulls(description: RobotDescription) -> Iterator[Diagnostic]:
         if isinstance(collision.shape, Mesh) and standing_parts(collision.shape).hulls
     ]
     if found:
-        what, times = "the triangle surface of a mesh", ""
-        if len(found) > 1:
-            times = f" ({len(found)} times)"
-        yield world_codes.PHYSICS_SETTING_IGNORED.diagnostic(
-            f"{what} has no effect{times}: a connected component has too many facets and collides "
-            "as its convex hull",
-            origin=found[0],
-            values={"setting": what, "count": len(found)},
-        )
+        why = "a connected component has too many facets and collides as its convex hull"
+        yield without_effect("the triangle surface of a mesh", found[0], len(found), why)
 
 
 def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
