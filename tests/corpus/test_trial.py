@@ -469,16 +469,13 @@ def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tr
     assert {fault.source for fault in faults} == {"unknown"}
 
 
-def test_the_legacy_mode_reverses_only_swapped_wheels(tried):
-    """Old releases of Gazebo reverse them, Gazebo 11 does not."""
+def test_the_legacy_mode_does_not_swap_the_wheels(tried):
+    """Since ROS Melodic, Gazebo's plugin ignores it."""
     legacy = cart(0.1).replace("<legacyMode>false", "<legacyMode>true")
     assert (verdict := tried(legacy)).good, verdict.faults
     swapped = legacy.replace("left_joint</", "x</").replace("right_joint</", "left_joint</")
-    assert (verdict := tried(swapped.replace("x</", "right_joint</"))).good, verdict.faults
-    (fault,) = tried(
-        swapped.replace("x</", "right_joint</").replace("Mode>true", "Mode>false")
-    ).faults
-    assert (fault.test, fault.code) == ("turn", WHEELS_SWAPPED)
+    (fault,) = tried(swapped.replace("x</", "right_joint</")).faults
+    assert (fault.test, fault.source, fault.code) == ("turn", "file", WHEELS_SWAPPED)
 
 
 def test_a_vehicle_without_known_sides_faces_where_its_wheels_roll(tmp_path, tried):

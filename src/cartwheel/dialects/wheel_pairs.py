@@ -118,15 +118,22 @@ def add_differential_drive(
     config: DifferentialDriveConfig,
     *,
     yaw_rate: Callable[[], float] | None = None,
+    hint: str = "",
 ) -> DifferentialDrive:
-    """Adds a differential drive, and reports swapped wheels; see `DifferentialDrive`."""
+    """Adds a differential drive, and reports swapped wheels; see `DifferentialDrive`.
+
+    Args:
+        plugin: The plugin.
+        config: Wheels, limits and odometry.
+        yaw_rate: Returns the yaw rate in rad/s that a gyroscope measures; None: there is none.
+        hint: What to do if the wheels are swapped.
+    """
     drive = plugin.add(DifferentialDrive(plugin.scope, config, yaw_rate=yaw_rate))
-    if not config.reverse:
-        _report_swapped_wheels(plugin, config.pairs)
+    _report_swapped_wheels(plugin, config.pairs, hint)
     return drive
 
 
-def _report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> None:
+def _report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair], hint: str) -> None:
     """Reports a left wheel on the right side, because the robot then turns the wrong way."""
     for pair in pairs:
         if are_swapped(plugin.part.description, pair.left, pair.right):
@@ -134,6 +141,7 @@ def _report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> N
                 robot.WHEELS_SWAPPED,
                 f'the left wheel ("{pair.left}") is to the right of the right wheel '
                 f'("{pair.right}"), so the robot turns the wrong way, as in Gazebo',
+                hint=hint,
                 values={"left": pair.left, "right": pair.right},
             )
             return

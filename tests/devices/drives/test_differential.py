@@ -61,13 +61,6 @@ def test_each_wheel_turns_by_its_own_radius_and_separation(drive, wheels):
     )
 
 
-def test_a_reversed_drive_turns_the_other_way(drive, wheels):
-    device = drive(replace(CONFIG, reverse=True))
-    device.command(0.0, 0.0, 1.0)
-    device.actuate(0.1)
-    assert wheels["fl"].command > 0 > wheels["fr"].command
-
-
 def test_rims_gain_speed_along_a_ramp(drive, wheels):
     device = drive(replace(CONFIG, acceleration=1.0))
     device.command(0.25, 0.0, 0.0)

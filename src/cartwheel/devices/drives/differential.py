@@ -54,8 +54,6 @@ class DifferentialDriveConfig:
     """Limits on the yaw rate."""
     limit_period: float | None = None
     """Time between two commands for `linear` and `angular`, s; None: the measured time."""
-    reverse: bool = False
-    """Invert the turning direction."""
     odometry: Literal["ground truth", "positions", "velocities", "commands"] = "ground truth"
     """Source of the odometry: the pose in the world, or dead reckoning from the wheels' positions
     or velocities, or from the limited commands."""
@@ -147,7 +145,7 @@ class DifferentialDrive(Drive):
         self._rotation = self._rotations()
 
     def command(self, forward: float, sideways: float, turn: float) -> None:  # noqa: ARG002
-        self._command = (forward, -turn if self._config.reverse else turn)
+        self._command = (forward, turn)
         if not self._is_limited:
             self._set_targets(*self._command)
 

@@ -21,7 +21,7 @@ _TORQUE = {1: "wheelTorque", 2: "max_wheel_torque"}
 
 @rule(devices_codes.PLUGIN_PARAMETER_OBSOLETE)
 def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
-    legacy_swapped = [
+    swapped = [
         drive
         for robot, drive, left, right in wheel_pairs(subject)
         if is_legacy(drive) and are_swapped(robot.description, left.name, right.name)
@@ -52,19 +52,17 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                         ),
                     )
             legacy = element.find("legacyMode")
-            if legacy is not None and is_legacy(drive):
-                swapped = any(drive is each for each in legacy_swapped)
-                message = (
-                    "Gazebo 11 ignores <legacyMode>, so the robot turns in the opposite direction"
-                    if swapped
-                    else "Gazebo 11 ignores <legacyMode>, and so does Cartwheel, because the "
-                    "wheels are on the sides that the tags state"
-                )
+            # If the wheels are swapped, another rule reports that they are.
+            if (
+                legacy is not None
+                and is_legacy(drive)
+                and not any(drive is each for each in swapped)
+            ):
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message=message,
+                    message="Gazebo 11 ignores <legacyMode>: the robot turns as commanded, because "
+                    "the wheels are on the sides that the tags state",
                     values={"tag": "legacyMode", "plugin": drive.tag.name},
                     **edits.whole(legacy, "<legacyMode>false</legacyMode>"),
-                    hint="Swap the names of the two joints." if swapped else "",
                 )
 
 

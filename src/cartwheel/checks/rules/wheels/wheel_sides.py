@@ -25,16 +25,20 @@ from cartwheel.checks.wheels import (
 )
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
+from cartwheel.dialects.classic.drives.diff_drive import LEGACY_SWAPPED
 from cartwheel.errors import Diagnostic, Where
+
+_SWAP = "Swap the two names."
 
 
 @rule(robot_codes.WHEELS_SWAPPED)
 def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in wheel_pairs(subject):
         element = drive.left_tag
-        if element is not None and not is_legacy(drive):
+        if element is not None:
             swap = edits.whole(element, nodes.written(element.tag, {}, right.name), mark=left.name)
-            yield from _judged(robot, left, right, "", **swap)
+            where: Where = {**swap, "hint": LEGACY_SWAPPED if is_legacy(drive) else _SWAP}
+            yield from _judged(robot, left, right, "", **where)
     for robot, controller, sides in controlled(subject):
         name = sides[0][0]
         pair = placed_pair(robot, *(side[0].text.strip() for side in sides))
@@ -75,7 +79,7 @@ def _judged(
 ) -> Iterator[Diagnostic]:
     why = _swapped(robot, left, right)
     if why:
-        where["hint"] = "Swap the two names."
+        where.setdefault("hint", _SWAP)
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'{owner}the left wheel joint "{left.name}" is to the right of '
             f'"{right.name}", {why}{_consequence(robot, left, right, ways)}',

@@ -16,11 +16,15 @@ from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
-from cartwheel.dialects.wheel_pairs import add_differential_drive, are_swapped, wheel_pairs
+from cartwheel.dialects.wheel_pairs import add_differential_drive, wheel_pairs
 from cartwheel.errors import PluginError
 
 _TORQUE = 5.0
 """Default of the maximum torque of each wheel, N m."""
+LEGACY_SWAPPED = (
+    "Swap the two names, and remove <legacyMode>, which Gazebo ignores since ROS Melodic."
+)
+"""What to do if the wheels of a robot with ``<legacyMode>`` are swapped."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -129,8 +133,8 @@ class DiffDriveParameters:
     legacy_mode: bool = tag(
         "legacyMode",
         default=False,
-        doc="Whether old releases of Gazebo's plugin reverse the turning direction. It has an "
-        "effect only if the names of the wheels are swapped, so that the robot turns as commanded.",
+        doc="No effect, as in Gazebo 11. The plugin of ROS Jade, Kinetic and Lunar swapped the "
+        "left and the right wheel.",
     )
 
 
@@ -196,7 +200,6 @@ class DiffDrive(Plugin[DiffDriveParameters]):
                 pairs=pairs,
                 max_torque=torque,
                 acceleration=config.wheel_acceleration,
-                reverse=config.legacy_mode and self._is_swapped(pairs),
                 odometry="positions" if encoder else "ground truth",
                 drive=DriveConfig(
                     command_topic=config.command_topic,
@@ -205,14 +208,8 @@ class DiffDrive(Plugin[DiffDriveParameters]):
                     joint_states=states,
                 ),
             ),
+            hint=LEGACY_SWAPPED if config.legacy_mode else "",
         )
-
-    def _is_swapped(self, pairs: tuple[WheelPair, ...]) -> bool:
-        """Whether the robot was written for an old release, which swapped the wheels itself.
-
-        Gazebo 11 does not, so robots that were written for it may also have the tag.
-        """
-        return any(are_swapped(self.part.description, each.left, each.right) for each in pairs)
 
     def _wheel_pairs(self) -> tuple[WheelPair, ...]:
         config = self.config
