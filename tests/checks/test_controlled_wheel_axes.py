@@ -2,6 +2,7 @@
 
 import pytest
 from tests.corpus.carts import cart, controlled, written
+from tests.corpus.test_heading import CAMERA
 
 import cartwheel
 from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED
@@ -49,6 +50,7 @@ def test_the_message_states_the_axis_of_the_other_wheel_if_it_points_to_the_left
     assert ("the other wheel's axis to the left" in one.message) is (1 not in sides)
 
 
-def test_reversed_axes_of_swapped_wheels_face_backwards(tmp_path):
-    path = written(tmp_path, reversed_cart(0, 1), controlled(tmp_path, swapped=True))
-    assert not found(path)
+def test_reversed_axes_of_swapped_wheels_face_backwards_if_a_camera_does(tmp_path):
+    parts = reversed_cart(0, 1), controlled(tmp_path, swapped=True)
+    assert not found(written(tmp_path, *parts, CAMERA.format(yaw=3.14)))
+    assert len(found(written(tmp_path, *parts))) == 2

@@ -7,7 +7,7 @@ from tests.dialects.ros_control.arms import ros2_parameters, ros2_plugin
 from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, car, four_wheels
 
 from cartwheel.checks.robot import Robot
-from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED
+from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED, WHEELS_SWAPPED
 from cartwheel.corpus import try_robot
 from cartwheel.corpus.heading import FORWARD, heading, rolling
 from cartwheel.description import load_text
@@ -37,6 +37,12 @@ def robot(*turning, tags=""):
 
 LIDAR = ("lidar", "0 0 0.3", "1 0 0")
 
+CAMERA = (
+    '<gazebo reference="base"><sensor type="camera" name="eye"><pose>0 0 0 0 0 {yaw}</pose><camera>'
+    "<horizontal_fov>1</horizontal_fov><image><width>8</width><height>8</height></image>"
+    "</camera></sensor></gazebo>"
+)
+
 
 @pytest.mark.parametrize("wheels", [(), (("left", "0 0.2 -0.05", "0 1 0"),)])
 def test_what_turns_above_the_ground_is_no_wheel(wheels):
@@ -62,10 +68,13 @@ def test_a_caster_that_rolls_to_the_side_does_not_change_where_the_driven_wheels
 @pytest.mark.parametrize(
     ("left", "axis", "x"), [(0.2, 1, 1), (-0.2, -1, -1), (0.2, -1, 1), (-0.2, 1, 1)]
 )
-def test_a_robot_whose_sides_and_axes_are_mirrored_faces_backwards(left, axis, x):
+@pytest.mark.parametrize("eyes", [(), (3.14,), (0,), (3.14, 0)])
+def test_a_robot_whose_sides_axes_and_cameras_are_mirrored_faces_backwards(left, axis, x, eyes):
     """It turns as commanded. With one of both alone, it turns or drives in the wrong direction."""
     wheels = [("left", left), ("right", -left)]
-    found = robot(*((name, f"0 {y} -0.05", f"0 {axis} 0") for name, y in wheels), tags=DRIVE)
+    tags = DRIVE + "".join(CAMERA.format(yaw=yaw).replace("eye", f"eye{yaw}") for yaw in eyes)
+    found = robot(*((name, f"0 {y} -0.05", f"0 {axis} 0") for name, y in wheels), tags=tags)
+    x = x if eyes == (3.14,) else 1
     speeds = {"left_joint": 2.0, "right_joint": 2.0}
     assert heading(found, speeds) == pytest.approx((x, 0.0))
 
@@ -87,16 +96,22 @@ def test_wheels_that_are_not_parallel_have_no_common_direction():
     assert rolling(robot(*wheels), ["a_joint", "b_joint"]) == {}
 
 
-@pytest.mark.parametrize("swapped", [True, False])
-def test_a_robot_with_a_controller_may_face_backward(tmp_path, swapped):
+@pytest.mark.parametrize(
+    ("swapped", "camera", "wrong"),
+    [
+        (True, CAMERA.format(yaw=3.14), {}),
+        (True, "", {"drive": WHEELS_SWAPPED}),
+        (False, "", dict.fromkeys(("drive", "turn"), WHEEL_AXIS_MISALIGNED)),
+    ],
+)
+def test_a_robot_with_a_controller_may_face_backward(tmp_path, swapped, camera, wrong):
     """With the wheels on their own sides, only the axes are wrong."""
     mirrored = cart().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>')
-    path = written(tmp_path, mirrored, controlled(tmp_path, swapped=swapped))
+    path = written(tmp_path, mirrored, camera, controlled(tmp_path, swapped=swapped))
     verdict = try_robot(path, standing=1.0)
     (drive,) = verdict.drives
-    assert drive.measured == pytest.approx(0.2 if swapped else -0.2, rel=0.05)
-    wrong = dict.fromkeys(("drive", "turn"), WHEEL_AXIS_MISALIGNED)
-    assert {each.test: each.code for each in verdict.faults} == ({} if swapped else wrong)
+    assert drive.measured == pytest.approx(-0.2 if wrong else 0.2, rel=0.05)
+    assert {each.test: each.code for each in verdict.faults} == wrong
 
 
 @pytest.mark.parametrize("swapped", [True, False])

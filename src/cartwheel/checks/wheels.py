@@ -34,6 +34,8 @@ _SAME = 1e-6
 """Distance between two joints at the same place, m."""
 CAMBER = 0.5
 """Minimum cosine between a wheel axis and the axle."""
+_LOOKS = 0.5
+"""Minimum component along x, or along -x, of the direction of a camera that shows the front."""
 _GZ_DRIVES = (GzDiffDrive, GzMecanumDrive, GzAckermannDrive)
 """Plugins whose wheels respect the velocity limits of their joints."""
 
@@ -251,11 +253,33 @@ def axis_senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
 def faces_backwards(robot: Robot, left: Joint, right: Joint) -> bool:
     """Whether reversed axes only mean that a robot faces backwards, or along negative y.
 
-    The left wheel is then on the right of a robot that faces forward, or the wheels are beside each
-    other along x, so that the names of the wheels may be swapped instead.
+    The left wheel is then on the right of a robot that faces forward, and a camera or steered
+    wheels show that its front is at -x. If the wheels are beside each other along x, the names of
+    the wheels may be swapped instead.
     """
     gap = gap_between(robot, left, right)
-    return bool(gap[1] < 0) or faces_sideways(gap)
+    return faces_sideways(gap) or bool(gap[1] < 0 and (_is_steered(robot) or looks_back(robot)))
+
+
+def looks_back(robot: Robot) -> bool:
+    """Whether the robot has cameras that look along -x of its root link, and none along x."""
+    ahead = [
+        rotate((robot.links[link.name].pose @ sensor.pose).orientation, (1.0, 0.0, 0.0))[0]
+        for link in robot.description.links
+        if link.name in robot.placed
+        for sensor in link.sensors
+        if sensor.cameras
+    ]
+    return bool(ahead) and min(ahead) < -_LOOKS and max(ahead) < _LOOKS
+
+
+def _is_steered(robot: Robot) -> bool:
+    """Whether a plugin or controller steers the robot's wheels, which are at its front or back."""
+    return bool(robot.steered) or any(
+        role.role == "steering" and role.joints(tag.element)
+        for tag in robot.description.plugins
+        for role in plugin_tags.roles(tag.filename)
+    )
 
 
 def wheel_links(robot: Robot, joint: Joint) -> list[str]:

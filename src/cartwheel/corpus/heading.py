@@ -35,7 +35,8 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
     """The direction in which parallel wheels roll, a unit vector in the robot's frame.
 
     It points toward +x, or toward -x if the robot faces backwards: its left wheels are on the
-    right, and all axes point to the right, so that it drives backwards and turns as commanded. For
+    right, all axes point to the right, so that it drives backwards and turns as commanded, and a
+    camera or steered wheels show that its front is there. For
     wheels with an axis along x, it points away from the side on which the left wheel would be on
     the right, or, if that is unknown, in the direction in which the wheels roll. The driven wheels
     count before those that only roll, such as a caster. Without parallel wheels on the ground it is

@@ -15,6 +15,7 @@ from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
     CAMBER,
     axis_senses,
+    faces_backwards,
     faces_sideways,
     gap_between,
     is_legacy,
@@ -80,6 +81,8 @@ def _judged(
     why = _swapped(robot, left, right)
     if why:
         where.setdefault("hint", _SWAP)
+        if all(sense < -CAMBER for sense in axis_senses(robot, left, right)):
+            where["hint"] += " Reverse both axes."
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'{owner}the left wheel joint "{left.name}" is to the right of '
             f'"{right.name}", {why}{_consequence(robot, left, right, ways)}',
@@ -98,7 +101,10 @@ def _consequence(robot: Robot, left: Joint, right: Joint, ways: tuple[float, flo
     rolled = [sense * way for sense, way in zip(senses, ways, strict=False)]
     if faces_sideways(gap_between(robot, left, right)) or (rolled and min(rolled) > CAMBER):
         return ", so the robot turns in the wrong direction"
-    return ", so the robot drives backwards" if rolled and max(rolled) < -CAMBER else ""
+    if not rolled or max(rolled) > -CAMBER:
+        return ""
+    both = ", and both axes point to the right" if max(senses) < -CAMBER else ""
+    return f"{both}, so the robot drives backwards"
 
 
 def _swapped(robot: Robot, left: Joint, right: Joint) -> str:
@@ -112,7 +118,8 @@ def _swapped(robot: Robot, left: Joint, right: Joint) -> str:
     if faces_sideways(gap):
         # Without a known direction of travel, the axes of the wheels define left and right.
         return "as seen in the direction in which the wheels roll" if reversed_ else ""
-    if abs(gap[0]) > 0.1 * abs(gap[1]) or gap[1] >= 0 or reversed_:
+    faces_backwards_ = reversed_ and faces_backwards(robot, left, right)
+    if abs(gap[0]) > 0.1 * abs(gap[1]) or gap[1] >= 0 or faces_backwards_:
         # The wheels are not beside each other, the sides are correct, or the robot faces
         # backwards, but is otherwise correct.
         return ""
