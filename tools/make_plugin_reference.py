@@ -69,6 +69,9 @@ Sensors for gz-sim, the successor of Gazebo Classic, need no `<plugin>`. A senso
 - The world or the model contains the matching system, such as `gz-sim-sensors-system`.
 - The sensor contains `<topic>` or `<gz_frame_id>`.
 - The sensor's type exists only in gz-sim.
+
+gz-sim publishes a sensor only if the world or a model in it contains the system. `cartwheel check`
+reports worlds of launch files without it (CW495).
 """
 
 _AFTER = """\

@@ -26,7 +26,6 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.launches import (
     LaunchSearch,
     OwnLaunches,
-    chosen,
     needs_expansion,
     unexpanded,
     unread,
@@ -162,7 +161,7 @@ def _subject(
         launched=launched,
         unexpanded=tuple(plain),
         arguments=opened.arguments,
-        find_launch=lambda: chosen(file, search(file).launches),
+        find_launches=lambda: search(file),
         find_unread=lambda: unread(each for own in found.values() for each in own.launches),
     )
     for robot in robots:

@@ -15,7 +15,7 @@ from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.elements.simulator import Simulator, simulator_of
 from cartwheel.description.files.packages import Packages
-from cartwheel.description.launches import LaunchUse
+from cartwheel.description.launches import LaunchUse, OwnLaunches, chosen
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.selection import Selection
 from cartwheel.errors import Diagnostic, Origin
@@ -35,6 +35,8 @@ class Subject:
     files: Sequence[str]
     """All files that xacro read, starting with the given one."""
     packages: Packages
+    find_launches: Callable[[], OwnLaunches]
+    """Returns the launch files of the description's author."""
     read: RobotDescription | WorldDescription | None = None
     """None if the description could not be read."""
     robots: tuple[Robot, ...] = ()
@@ -52,8 +54,6 @@ class Subject:
     """About a launch file that does not expand the description."""
     arguments: Mapping[str, str] = field(default_factory=dict)
     """Arguments of the xacro, including defaults."""
-    find_launch: Callable[[], LaunchUse | None] = lambda: None
-    """Returns the launch file that starts the description."""
     find_unread: Callable[[], Sequence[Diagnostic]] = tuple
     """Returns what was not read of the launch files that were searched."""
 
@@ -87,7 +87,12 @@ class Subject:
     @cached_property
     def launch(self) -> LaunchUse | None:
         """The launch file that starts the description, if there is one."""
-        return self.find_launch()
+        return chosen(Path(self.files[0]), self.own_launches.launches)
+
+    @cached_property
+    def own_launches(self) -> OwnLaunches:
+        """The launch files of the description's author."""
+        return self.find_launches()
 
     @cached_property
     def macros(self) -> frozenset[str]:

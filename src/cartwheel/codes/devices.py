@@ -327,3 +327,9 @@ ODOMETRY_FRAME_IS_LINK = Code(
 NOISE_TYPE_UNKNOWN = Code(
     "CW494", "noise-type-unknown", "error", "the noise of a sensor has a type that does not exist"
 )
+SENSOR_SYSTEM_MISSING = Code(
+    "CW495",
+    "sensor-system-missing",
+    "warning",
+    "a world for gz-sim does not load the system that publishes a sensor",
+)

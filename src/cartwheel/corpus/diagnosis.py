@@ -308,6 +308,10 @@ def _measured(
     for topic in verdict.silent:
         reason = coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
+    for reason in _unpublished(verdict, description, findings):
+        names = reason.values.get("sensors", ())
+        subject = ", ".join(map(str, names)) if isinstance(names, tuple) else ""
+        yield Fault(test="publish", subject=subject, reason=reason)
     for subject, reason in held_bases(verdict, description, findings):
         yield Fault(test="drive", subject=subject, reason=reason)
 
@@ -373,6 +377,15 @@ def _measured(
     for flight in verdict.flights:
         if not flight.flies:
             yield Fault(test="fly", subject=flight.topic)
+
+
+def _unpublished(
+    verdict: Verdict, description: RobotDescription, findings: Callable[[], Sequence[Diagnostic]]
+) -> Iterator[Diagnostic]:
+    """Why gz-sim does not publish some sensors, which Cartwheel does in any world."""
+    sensors = any(link.sensors for link in description.links)
+    if sensors and (verdict.model or verdict.launch is not None):
+        yield from (each for each in findings() if each.code is devices.SENSOR_SYSTEM_MISSING)
 
 
 def _has_slip(description: RobotDescription) -> bool:

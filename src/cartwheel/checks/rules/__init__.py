@@ -67,6 +67,7 @@ from cartwheel.checks.rules.wheels import (
     wheels_braked,
     wheels_off_ground,
 )
+from cartwheel.checks.rules.worlds import sensor_systems
 
 RULES: tuple[Rule, ...] = tuple(
     each
@@ -105,6 +106,7 @@ RULES: tuple[Rule, ...] = tuple(
         blocked_views,
         update_rates,
         sensor_types,
+        sensor_systems,
         sensor_ranges,
         hardware_plugins,
         idle_managers,

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from cartwheel.description.elements.simulator import Simulator
 from cartwheel.errors import Diagnostic, Origin
 
 
@@ -64,6 +65,10 @@ class LaunchUse:
     then be any file, also one that is not a robot."""
     world: str = ""
     """The world that it starts, as it is stated; empty if there is none."""
+    gazebos: frozenset[Simulator] = frozenset()
+    """The versions of Gazebo that it starts, or in which it spawns models, if they are known."""
+    gz_worlds: tuple[str, ...] = ()
+    """The worlds that it starts in gz-sim, as they are stated; `UNKNOWN` is in unknown ones."""
     models: tuple[str, ...] = ()
     """The names that it gives to the models that it spawns."""
     spaces: frozenset[str] = frozenset()

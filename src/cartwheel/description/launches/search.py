@@ -184,6 +184,8 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 simulated=facts.simulated,
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,
+                gazebos=frozenset(facts.gazebos.kinds),
+                gz_worlds=tuple(map(facts.found_world, dict.fromkeys(facts.gazebos.worlds))),
                 models=tuple(dict.fromkeys(each.name for each in facts.spawns if each.name)),
                 spaces=frozenset(
                     UNKNOWN if "namespace" in each.unknown else each.namespace

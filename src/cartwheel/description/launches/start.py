@@ -124,8 +124,7 @@ def read_launch(
     if not world and file.suffix == ".py":
         # Included launch files inherit the arguments, such as `world` of gazebo.launch.py.
         world = arguments.get("world", facts.defaults.get("world", ""))
-    if Path(world).is_absolute() and UNKNOWN not in world:
-        world = str(facts.here(Path(world)))
+    world = facts.found_world(world)
     return LaunchStart(
         file=file,
         models=models,

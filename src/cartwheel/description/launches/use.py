@@ -19,6 +19,7 @@ from cartwheel.description.launches import variants
 from cartwheel.description.launches.bridging import BRIDGES, RenamedTopic, renamed_topics
 from cartwheel.description.launches.controllers import ControllerCommand, by_command, by_spawner
 from cartwheel.description.launches.effort import UNKNOWN, Effort
+from cartwheel.description.launches.gazebos import Gazebos
 from cartwheel.description.launches.launch_use import Unfound
 from cartwheel.description.launches.python_variables import Place, Uncertain
 from cartwheel.description.launches.spawning import (
@@ -96,6 +97,7 @@ class Facts:
     spawns: list[Spawn] = field(default_factory=list)
     world: str = ""
     """The world as it is stated; empty if none is."""
+    gazebos: Gazebos = field(default_factory=Gazebos)
     bridges: list[Path] = field(default_factory=list)
     """Configuration files of ros_gz_bridge."""
     renamed: list[RenamedTopic] = field(default_factory=list)
@@ -243,6 +245,11 @@ class Facts:
                     return found
         return self._only(package, file.name) or file
 
+    def found_world(self, world: str) -> str:
+        """A world as it is stated, or its path if it is elsewhere than an absolute path states."""
+        absolute = Path(world).is_absolute() and UNKNOWN not in world
+        return str(self.here(Path(world))) if absolute else world
+
     def _only(self, package: Path, name: str) -> Path | None:
         """The only file of a name in a package; None if there is none or several."""
         found: list[Path] = []
@@ -291,7 +298,8 @@ class Facts:
                         self.absent[f'model "{spawn.model}"'.replace(UNKNOWN, "…")] = None
                 self.spawns.append(replace(spawn, described=described))
             else:
-                self._begin(world_in(words))
+                self._begin(world_in(words) or values.get("world_sdf_file", ""))
+            self.gazebos.add_node(package, () if executable in MODEL_SPAWNERS else words, values)
         if package in BRIDGES:
             for word in words:
                 if word.startswith("config_file:="):
@@ -315,6 +323,7 @@ class Facts:
         if words and words[0].rsplit("/", 1)[-1] in _SERVERS:
             self.simulated = True
             self._begin(world_in(words))
+        self.gazebos.add_command(words)
         # With a shell, the words of a command are joined.
         program, *rest = " ".join(words).split() or [""]
         if program.rsplit("/", 1)[-1] != "ros2":
@@ -405,13 +414,13 @@ class Facts:
         """
         if _WORLD.search(text.rsplit("/", 1)[-1]):
             self.simulated = True
-            for name in ("world_name", "world"):
+            for name in ("world_name", "world", "world_sdf_file"):
                 self._begin(arguments.get(name, ""))
             for name in ("gz_args", "ign_args"):
                 self._begin(world_in(split(arguments.get(name, ""))))
-        if UNKNOWN in text or depth >= DEEPEST:
-            return
         path = Path(text.strip())
-        if is_file(path):
+        is_own = UNKNOWN not in text and depth < DEEPEST and is_file(path)
+        self.gazebos.add_launch_file(path.name, arguments, is_own=is_own)
+        if is_own:
             self.effort.spend(len(inherited))
             self.read(path, {**inherited, **arguments}, self, depth + 1)

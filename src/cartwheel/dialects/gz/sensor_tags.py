@@ -49,6 +49,21 @@ SYSTEMS = {
 effect: Cartwheel's plugins serve the types themselves.
 """
 
+CLASSES = {
+    "gz-sim-sensors-system": "Sensors",
+    "gz-sim-imu-system": "Imu",
+    "gz-sim-contact-system": "Contact",
+    "gz-sim-navsat-system": "NavSat",
+    "gz-sim-magnetometer-system": "Magnetometer",
+    "gz-sim-altimeter-system": "Altimeter",
+    "gz-sim-logical-camera-system": "LogicalCamera",
+    "gz-sim-air-pressure-system": "AirPressure",
+    "gz-sim-air-speed-system": "AirSpeed",
+    "gz-sim-forcetorque-system": "ForceTorque",
+}
+"""The classes of these systems, in the namespace ``gz::sim::systems``."""
+RAYS_ON_CPU = frozenset({"lidar", "ray"})
+"""Lidars that no system publishes up to Jetty."""
 _CONTROL = ("gz_ros2_control-system", "ign_ros2_control-system")
 _NEW_TYPES = {
     "rgbd",
@@ -103,12 +118,12 @@ def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
     """
     if any(sensor.type in SYSTEMS.get(system, ()) for system in systems):
         return True
-    if any(_is_of_gz(system) for system in systems):
+    if any(is_of_gz(system) for system in systems):
         return any(sensor.type in types for types in SYSTEMS.values())
     return sensor.type in _NEW_TYPES or any(sensor.element.find(tag) for tag in _NEW_TAGS)
 
 
-def _is_of_gz(plugin: str) -> bool:
+def is_of_gz(plugin: str) -> bool:
     """Whether only gz-sim has a plugin with this short name."""
     return plugin.startswith("gz-sim-") or plugin in _CONTROL
 

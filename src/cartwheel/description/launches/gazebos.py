@@ -1,0 +1,81 @@
+"""Which Gazebo a launch file starts, and gz-sim's worlds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from cartwheel.description.elements.simulator import Simulator
+from cartwheel.description.launches.effort import UNKNOWN
+from cartwheel.description.launches.spawning import split, world_in
+
+_PACKAGES: Mapping[str, Simulator] = {
+    "gazebo_ros": "classic",
+    "ros_gz_sim": "gz",
+    "ros_ign_gazebo": "gz",
+    "ros_gz": "gz",
+}
+_PROGRAMS: Mapping[str, Simulator] = {
+    "gazebo": "classic",
+    "gzserver": "classic",
+    "gz": "gz",
+    "ign": "gz",
+}
+_LAUNCH_FILES: Mapping[str, Simulator] = {
+    "empty_world.launch": "classic",
+    "gazebo.launch.py": "classic",
+    "gzserver.launch.py": "classic",
+    "gz_sim.launch.py": "gz",
+    "gz_server.launch.py": "gz",
+    "gz_spawn_model.launch.py": "gz",
+    "ign_gazebo.launch.py": "gz",
+    "ros_gz_sim.launch.py": "gz",
+    "ros_gz_spawn_model.launch.py": "gz",
+}
+"""Launch files of these packages, by which others start Gazebo."""
+_ARGUMENTS = ("gz_args", "ign_args")
+_WORLD = "world_sdf_file"
+"""The argument and parameter of ros_gz_sim's server that names its world."""
+
+
+@dataclass(kw_only=True)
+class Gazebos:
+    """What is known of the Gazebo that a launch file starts."""
+
+    kinds: set[Simulator] = field(default_factory=set)
+    """The versions of Gazebo that it starts, or in which it spawns models."""
+    worlds: list[str] = field(default_factory=list)
+    """The worlds that it starts in gz-sim, as they are stated; `UNKNOWN` is in unknown ones."""
+
+    def add_node(self, package: str, words: Sequence[str], values: Mapping[str, str]) -> None:
+        """Adds what a node of a package starts, with its arguments and parameters."""
+        self._add(_PACKAGES.get(package, ""), [*words, values.get(_WORLD, "")])
+
+    def add_command(self, words: Sequence[str]) -> None:
+        """Adds what a command starts."""
+        program = words[0].split()[0] if words and words[0].strip() else ""
+        self._add(_PROGRAMS.get(program.rsplit("/", 1)[-1], ""), words[1:])
+
+    def add_launch_file(self, name: str, arguments: Mapping[str, str], *, is_own: bool) -> None:
+        """Adds what an included launch file starts.
+
+        Args:
+            name: The end of its path.
+            arguments: The arguments that it receives.
+            is_own: Whether it exists here and is read itself.
+        """
+        if is_own:
+            return
+        kind = _LAUNCH_FILES.get(name, "")
+        stated = [arguments[each] for each in _ARGUMENTS if arguments.get(each)]
+        if stated:
+            kind = "gz"
+        words = [word for each in stated for word in split(each)]
+        self._add(kind, [*words, arguments.get(_WORLD, "")])
+
+    def _add(self, kind: Simulator, words: Sequence[str]) -> None:
+        if kind:
+            self.kinds.add(kind)
+        if kind == "gz":
+            world = world_in(words) or (UNKNOWN if any(UNKNOWN in each for each in words) else "")
+            self.worlds += [world] if world else []
