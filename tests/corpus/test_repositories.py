@@ -8,7 +8,7 @@ from cartwheel.checks.checking import check
 from cartwheel.cli.commands.corpus import corpus
 from cartwheel.corpus import try_robot
 from cartwheel.description.files.repositories import repository_of
-from cartwheel.description.launches import LaunchUse, own, own_launches
+from cartwheel.description.launches import LaunchSearch, LaunchUse, own, own_launches
 
 ARM = (
     '<robot name="arm"><link name="world"/><link name="base"/><link name="upper">'
@@ -77,6 +77,45 @@ def test_launch_files_of_another_repository_are_not_used(folder):
     arm = folder / "one" / "arm.urdf"
     assert try_robot(arm, standing=1.0, folder=folder).controllers == ("move",)
     (folder / "two" / ".git").mkdir()
+    verdict = try_robot(arm, standing=1.0, folder=folder)
+    assert verdict.launch is None
+    assert not verdict.controllers
+
+
+SPAWN = '<node name="g" pkg="gazebo_ros" type="spawn_model" args="-urdf -model arm"/></launch>'
+
+
+def test_the_simulation_of_a_robot_may_be_in_another_repository_of_the_given_folder(folder):
+    """The description and its simulation are often two repositories of one workspace."""
+    (folder / "two" / "config/move.yaml").unlink()
+    launch = LAUNCH.replace("</launch>", SPAWN)
+    files = {"launch/arm.launch": launch, "settings/move.yaml": CONTROLLER}
+    package(folder / "two", "arm_sim", files)
+    for each in ("one", "two"):
+        (folder / each / ".git").mkdir()
+    arm = folder / "one" / "arm.urdf"
+    verdict = try_robot(arm, standing=1.0, folder=folder)
+    assert verdict.launch is not None
+    assert verdict.launch.file == folder / "two/launch/arm.launch"
+    assert verdict.controllers == ("move",)
+    assert not verdict.faults
+    assert not try_robot(arm, standing=1.0, folder=folder / "one").controllers
+    assert not try_robot(arm, standing=1.0).controllers
+    checked = check(arm, launches=LaunchSearch(given=folder).of)
+    assert str(folder / "two" / "settings/move.yaml") in checked.files
+    assert not [each for each in checked.findings if each.code.name == "controllers-not-found"]
+
+    # The author's own launch file comes first.
+    own = launch.replace("arm_sim", "arm_description").replace("settings/", "")
+    package(folder / "one", "arm_description", {"start.launch": own, "move.yaml": CONTROLLER})
+    verdict = try_robot(arm, standing=1.0, folder=folder)
+    assert verdict.launch is not None
+    assert verdict.launch.file == folder / "one/start.launch"
+    (folder / "one/start.launch").unlink()
+    (folder / "one/move.yaml").unlink()
+
+    # With a second package of this name, it may be that of another author.
+    package(folder / "three", "arm_description", {})
     verdict = try_robot(arm, standing=1.0, folder=folder)
     assert verdict.launch is None
     assert not verdict.controllers

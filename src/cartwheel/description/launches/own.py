@@ -7,7 +7,12 @@ from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
 
-from cartwheel.description.files.package_folders import package_above
+from cartwheel.description.files.package_folders import (
+    PackagesByName,
+    package_above,
+    package_name,
+    packages_below,
+)
 from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.search import launches_near
@@ -28,14 +33,18 @@ class OwnLaunches:
     """
     launches: Sequence[LaunchUse]
     """Those in the repository. If it is unknown, they are in none, and if the user gave a folder,
-    those that name no description are in `folder`."""
+    those that name no description are in `folder`.
+
+    If none of them simulates the description, those of other repositories that do are among them,
+    in the folder that the user gave. The package of the description must be the only one with its
+    name in this folder."""
 
 
 class LaunchSearch:
     """Reads the launch files of descriptions' authors; those of each folder are read once.
 
-    They are searched in the repository of a description. If this is unknown, they are searched in
-    the folder that the user gave, and near the description, in the folder of `root_of`.
+    They are searched in the repository of a description, in the folder that the user gave, and near
+    the description, in the folder of `root_of`.
 
     Args:
         package_path: Folders to search for packages first.
@@ -43,7 +52,7 @@ class LaunchSearch:
     """
 
     def __init__(self, package_path: Sequence[Path] = (), given: Path | None = None) -> None:
-        self._given = given
+        self._given = None if given is None else given.absolute()
         self._read = cache(partial(launches_near, package_path=package_path))
         self._known: dict[Path, OwnLaunches] = {}
 
@@ -56,18 +65,16 @@ class LaunchSearch:
 
     def _find(self, description: Path) -> OwnLaunches:
         repository = repository_of(description)
-        within = self._given if repository is None else None
-        near, far = root_of(description), repository or within
         # The number of launch files that are read is limited, so the nearest come first.
-        uses = [] if near is None else [*self._read(near)]
-        if far is not None and far != near:
-            outside = (
-                each
-                for each in self._read(far)
-                if near is None or not each.file.is_relative_to(near)
-            )
-            uses += outside
-        return _own(description, uses, repository, within)
+        folders = (root_of(description), repository, self._given)
+        uses: list[LaunchUse] = []
+        read: list[Path] = []
+        for folder in folders:
+            if folder is not None and folder not in read:
+                new = self._read(folder)
+                uses += [each for each in new if not _is_below(each.file, read)]
+                read.append(folder)
+        return _own(description, uses, repository, self._given)
 
 
 def own_launches(
@@ -106,20 +113,55 @@ def _own(
     own = _folder(description.absolute(), repository, within)
     near = [(each, each.file.absolute().is_relative_to(own)) for each in uses]
     if repository is not None:
-        return OwnLaunches(folder=own, launches=[each for each, inside in near if inside])
+        found = [each for each, inside in near if inside]
+        others = [each for each, inside in near if not inside]
+        return OwnLaunches(folder=own, launches=_with_others(description, found, others, within))
 
     @cache
     def is_loose(folder: Path) -> bool:
         """Whether the files in a folder are in no repository; many launch files are in one."""
         return repository_of(folder / description.name, within) is None
 
+    loose = [(each, is_loose(each.file.absolute().parent)) for each, _ in near]
     found = [
         each
-        for each, inside in near
-        if (within is None or each.description is not None or inside)
-        and is_loose(each.file.absolute().parent)
+        for (each, inside), (_, is_own) in zip(near, loose, strict=True)
+        if is_own and (within is None or each.description is not None or inside)
     ]
-    return OwnLaunches(folder=own, launches=found)
+    others = [each for each, is_own in loose if not is_own]
+    return OwnLaunches(folder=own, launches=_with_others(description, found, others, within))
+
+
+def _is_below(file: Path, folders: Sequence[Path]) -> bool:
+    return any(file.is_relative_to(folder) for folder in folders)
+
+
+def _with_others(
+    description: Path, own: list[LaunchUse], others: Iterable[LaunchUse], within: Path | None
+) -> list[LaunchUse]:
+    """The launch files of a description's author, and those of other repositories.
+
+    See `OwnLaunches.launches`. The description of a robot and its simulation are often in two
+    repositories, which are side by side in a workspace.
+    """
+    path = description.resolve()
+
+    def simulates(use: LaunchUse) -> bool:
+        if use.description is None or use.guessed or not use.simulated:
+            return False
+        return use.description.resolve() == path
+
+    if within is None or any(map(simulates, own)):
+        return own
+    found = [each for each in others if simulates(each)]
+    return [*own, *found] if found and _is_only(description, within) else own
+
+
+def _is_only(description: Path, within: Path) -> bool:
+    """Whether the package of a description is the only one with its name in a folder."""
+    package = package_above(description.absolute().parent)
+    name = None if package is None else package_name(package)
+    return name is not None and len(PackagesByName(packages_below(within)).all(name)) == 1
 
 
 def _folder(file: Path, repository: Path | None, within: Path | None) -> Path:
