@@ -135,7 +135,7 @@ def test_names_of_files():
 def test_the_report(load_robot):
     robot = load_robot(LINK, include(), CALL)
     (found,) = coded(robot, files.STAND_IN_USED)
-    assert "its frames and sensors match, but its shapes are plain" in found.message
+    assert "its frames, joints and sensors match, but its shapes are plain" in found.message
 
 
 CAMERA = '<gazebo reference="{}"><sensor name="mine" type="camera"/></gazebo>'

@@ -83,7 +83,7 @@ def _stand_ins(packages: Packages, sensors: tuple[str, ...]) -> Iterator[Diagnos
     for name, origin in packages.stand_ins.items():
         yield codes.STAND_IN_USED.diagnostic(
             f'the package "{name}" was not found, and Cartwheel\'s stand-in for it is used: its '
-            "frames and sensors match, but its shapes are plain",
+            "frames, joints and sensors match, but its shapes are plain",
             origin=origin,
             hint=packages.how_to_install(name),
             values={"package": name, "added_sensors": sensors},
