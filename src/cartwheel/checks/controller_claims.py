@@ -14,7 +14,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
 from cartwheel.codes.devices import CONTROLLERS_NOT_FOUND
 from cartwheel.description.model import Element, PluginTag
-from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
+from cartwheel.dialects.catalogue import OF_FETCH, ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.interfaces import COMMANDS, PLAIN, SYSTEMS, hardware_of
@@ -230,7 +230,7 @@ def managers(robot: Robot, *, ros2: bool) -> list[PluginTag]:
         for tag in robot.description.plugins
         if (plugin := plugin_named(tag.filename)) is not None
         and issubclass(plugin, ControlPlugin)
-        and ros2 != (plugin is plugin_named(ROS_CONTROL))
+        and ros2 != (plugin in (plugin_named(ROS_CONTROL), plugin_named(OF_FETCH)))
     ]
 
 

@@ -8,7 +8,7 @@ from collections.abc import Set
 from cartwheel.codes.tags import TAG_IGNORED
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import Element, PluginTag, RobotDescription
-from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.catalogue import OF_FETCH, plugin_named, short_name
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT, refused
 from cartwheel.errors import Diagnostic
 
@@ -29,7 +29,7 @@ _TRAVELS = re.compile(
     re.IGNORECASE,
 )
 """Names of unsupported plugins that move something."""
-_MANAGER = re.compile(r"ros2?_control")
+_MANAGER = re.compile(rf"ros2?_control|^{OF_FETCH}$")
 _COMMANDS = re.compile(
     r"gain|force|torque|thrust|motor|rotor|cmd_?vel|(?:^|_)traj(?:_|$|ector)|way_?point"
     r"|^(?:linear|angular)_?velocity$",

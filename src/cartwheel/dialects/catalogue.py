@@ -20,6 +20,8 @@ from cartwheel.dialects.generated import PLUGINS, SENSORS
 from cartwheel.dialects.plugin import Plugin
 
 ROS_CONTROL = "gazebo_ros_control"
+OF_FETCH = "fetch_gazebo_plugin"
+"""The controller manager of Fetch, whose controllers are in files of ROS 1 as well."""
 Plugins = Sequence[type[Plugin[Any]]]
 _ADDED: ContextVar[Plugins] = ContextVar("added plugins", default=())
 

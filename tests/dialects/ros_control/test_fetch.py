@@ -9,6 +9,7 @@ from tests.coded import coded
 from cartwheel.checks.checking import check
 from cartwheel.codes import devices, running
 from cartwheel.codes import robot as robots
+from cartwheel.corpus import try_robot
 from cartwheel.messages import from_dict
 
 SUCCEEDED, ABORTED, PREEMPTED = 3, 4, 2
@@ -252,6 +253,52 @@ def test_the_size_of_the_base_is_stated(make, tmp_path):
         fetch.world.run(0.1)
     # The drive takes the wheels for half as large as they are.
     assert fetch.model.pose.x == pytest.approx(2 * 0.2 * (3.0 - 0.2 / 0.75 / 2), rel=0.03)
+
+
+def test_the_defaults_of_the_base_do_not_depend_on_its_shapes(make, tmp_path):
+    """Wheels of meshes, for example, have no radius."""
+    file, urdf = tmp_path / "default_controllers.yaml", tmp_path / "fetch.urdf"
+    file.write_text(yaml.safe_dump(CONTROLLERS))
+    ball = '<collision><geometry><box size="0.085 0.03 0.085"/></geometry></collision>'
+    urdf.write_text(robot().replace(WHEEL, ball))
+    world = make.world(gravity=0.0)
+    world.spawn(urdf, z=1.0, controllers=[file])
+
+    def drive(seconds):
+        for _ in range(round(seconds / 0.1)):
+            world.publish("/cmd_vel", linear_x=0.2)
+            world.run(0.1)
+        return world.session.simulation.joint_position("fetch", "l_wheel_joint")
+
+    before = drive(1.0)
+    assert drive(1.0) - before == pytest.approx(0.2 * 16.5289, rel=0.01)
+
+
+@pytest.mark.parametrize("names", ["all", "base"])
+def test_a_launch_file_loads_its_controllers(tmp_path, names):
+    base = {each: CONTROLLERS[each] for each in ("base_controller", "gazebo")}
+    base["gazebo"] = {"default_controllers": ["base_controller"], "l_wheel_joint": {}}
+    loaded = CONTROLLERS if names == "all" else base
+    (tmp_path / "package.xml").write_text("<package><name>bot</name></package>")
+    (tmp_path / "launch").mkdir()
+    (tmp_path / "fetch.urdf").write_text(robot())
+    (tmp_path / "settings.yaml").write_text(yaml.safe_dump(loaded))
+    (tmp_path / "launch" / "bot.launch").write_text(
+        '<launch><rosparam file="$(find bot)/settings.yaml" command="load"/>'
+        '<param name="robot_description" textfile="$(find bot)/fetch.urdf"/>'
+        '<node name="g" pkg="gazebo_ros" type="spawn_model" args="-urdf -model bot"/></launch>'
+    )
+    verdict = try_robot(tmp_path / "fetch.urdf", standing=1.0)
+    assert {drive.topic for drive in verdict.drives} == {"/base_controller/command", "/cmd_vel"}
+    assert verdict.should_move
+    assert not verdict.faults
+    (tmp_path / "launch" / "bot.launch").unlink()
+    (tmp_path / "settings.yaml").unlink()
+    verdict = try_robot(tmp_path / "fetch.urdf", standing=1.0)
+    assert verdict.should_move
+    assert [fault.code for fault in verdict.faults] == [
+        devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS
+    ]
 
 
 def test_without_a_file_nothing_is_driven(make, tmp_path):

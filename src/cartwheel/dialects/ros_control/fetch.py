@@ -46,9 +46,10 @@ class FetchParameters:
 class Fetch(ControlPlugin):
     """Runs the controllers of Fetch and Freight, whose parameters are in a YAML file.
 
-    Pass the file, such as ``default_controllers.yaml``, with ``cartwheel run --controllers``. A
+    A launch file loads the file, or it is passed with ``cartwheel run --controllers``. A
     ``DiffDriveBaseController`` drives the wheels: it subscribes to ``cmd_vel`` and
-    ``base_controller/command`` (Twist) and publishes ``odom``. A
+    ``base_controller/command`` (Twist) and publishes ``odom``. As in the original, the default of
+    ``track_width`` is 0.37476 m and that of ``radians_per_meter`` 16.5289 rad/m. A
     ``FollowJointTrajectoryController`` follows trajectories by the action
     ``follow_joint_trajectory``. A goal starts it, and stops other controllers of the same joints.
     A ``ParallelGripperController`` moves the fingers by the action ``gripper_action``. A
@@ -143,14 +144,9 @@ class Fetch(ControlPlugin):
         """Returns the drive of the base. The defaults are those of robot_controllers."""
         settings = entry.settings()
         left, right = _wheels(settings)
-        size = {}
-        if settings.has("track_width"):
-            size["wheel_separation"] = settings.number("track_width")
-        if settings.has("radians_per_meter"):
-            turns = settings.number("radians_per_meter")
-            if turns < SMALLEST:
-                raise settings.invalid("radians_per_meter", turns, "a positive number")
-            size["wheel_radius"] = 1.0 / turns
+        turns = settings.number("radians_per_meter", 16.5289)
+        if turns < SMALLEST:
+            raise settings.invalid("radians_per_meter", turns, "a positive number")
         command = f"{entry.name}/command"
         self.subscribe(command, _TWIST, self._on_base_command)
         self._Twist = message_class(_TWIST)
@@ -160,7 +156,8 @@ class Fetch(ControlPlugin):
             values={
                 "left_wheel": left,
                 "right_wheel": right,
-                **size,
+                "wheel_separation": settings.number("track_width", 0.37476),
+                "wheel_radius": 1.0 / turns,
                 "base_frame_id": "base_link",
                 "publish_rate": 50.0,
                 "enable_odom_tf": settings.boolean("publish_tf", True),

@@ -12,7 +12,7 @@ from cartwheel.codes.running import CONTROLLERS_NOT_NAMED
 from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.model import PluginTag, RobotDescription
-from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
+from cartwheel.dialects.catalogue import OF_FETCH, ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
     controller_entries,
@@ -30,6 +30,8 @@ from cartwheel.dialects.tags import roles_of
 from cartwheel.errors import CartwheelError, Diagnostic
 
 _ROS2_CONTROL = "gz_ros2_control-system"
+_TYPES_OF_FETCH = "robot_controllers/"
+"""Files of Fetch's plugin list the joints below ``gazebo``, because a drive need not name them."""
 _ARGUMENT = re.compile(r"\$\((?:arg|var)\s+[^()]*\)")
 _BROADCASTS = "joint_state"
 """Part of the types that publish joint states."""
@@ -172,6 +174,8 @@ def _fitting(
         values = [entry.values for entry in entries]
         if not ros2:
             values.append(content.get(PARAMETERS, {}))
+            if any(entry.type.startswith(_TYPES_OF_FETCH) for entry in entries):
+                values.append(content.get("gazebo", {}))
         words = {word for each in values for word in texts(each)}
         named = any(_names(word, joint) for joint in joints for word in words)
         broadcasts = len(entries) == 1 and _BROADCASTS in entries[0].type
@@ -194,6 +198,9 @@ def _can_fit(text: str, joints: Sequence[str]) -> bool:
 def _manager(tag: PluginTag) -> str:
     """Returns which controller manager a plugin is, by its name; empty for other plugins."""
     plugin = plugin_named(tag.filename)
+    if plugin is not None and plugin is plugin_named(OF_FETCH):
+        # Its controllers are in files of ROS 1 as well.
+        return ROS_CONTROL
     for name in (ROS_CONTROL, _ROS2_CONTROL):
         if plugin is not None and plugin is plugin_named(name):
             return name
