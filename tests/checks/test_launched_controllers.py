@@ -153,3 +153,63 @@ def test_a_manager_without_controllers_is_only_noted(tmp_path):
     )
     path.write_text(text.replace("</robot>", drive))
     assert CONTROLLERS_NOT_FOUND not in [each.code for each in check(path).findings]
+
+
+OTHER = """controller_manager:
+  ros__parameters:
+    base: {type: diff_drive_controller/DiffDriveController}
+    wide: {type: diff_drive_controller/DiffDriveController}
+"""
+DRIVE = """{name}:
+  ros__parameters:
+    left_wheel_names: [left_joint]
+    right_wheel_names: [right_joint]
+    wheel_separation: {separation}
+    wheel_radius: 0.05
+"""
+
+
+@pytest.mark.parametrize(
+    ("starts", "program", "found"),
+    [
+        ("base", "", False),
+        ("wide", "", True),
+        ("$(env NAME)", "", True),
+        ("base", "ros2 run controller_manager spawner wide", True),
+        ("base", "drives the wide robot", False),
+    ],
+)
+def test_only_controllers_that_something_starts_are_checked(tmp_path, starts, program, found):
+    """A name that is unknown may be that of any of them."""
+    launch = LAUNCH.replace('args="base"', f'args="{starts}"')
+    path = spawned(tmp_path, named=True, launch=launch)
+    drives = (DRIVE.format(name=n, separation=x) for n, x in (("base", 0.2), ("wide", 0.4)))
+    (path.parent / "settings" / "base.yaml").write_text(OTHER + "".join(drives))
+    (path.parent / "README.md").write_text(program)
+    codes = [each.code for each in check(path).findings]
+    assert (WHEEL_SEPARATION_MISMATCH in codes) is found
+
+
+@pytest.mark.parametrize(
+    ("named", "starts"), [(True, ""), (True, "joint_state_broadcaster"), (False, "")]
+)
+@pytest.mark.parametrize("case", [(True, "", True), (False, "", False), (True, "base", False)])
+def test_controllers_that_nothing_starts_do_not_move_a_robot(tmp_path, named, starts, case):
+    gazebo, instruction, found = case
+    spawner = '<node pkg="controller_manager" exec="spawner" args="base"/>'
+    world = '<include file="$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py"/>'
+    launch = LAUNCH.replace(spawner, spawner.replace("base", starts) if starts else "")
+    launch = launch.replace("</launch>", world + "</launch>") if gazebo else launch
+    path = spawned(tmp_path, named=named, launch=launch)
+    settings = path.parent / "settings" / "base.yaml"
+    publisher = (
+        "\n    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}"
+    )
+    text = settings.read_text().replace("0.4", "0.2")
+    settings.write_text(text.replace("    base:", f"{publisher[1:]}\n    base:"))
+    (path.parent / "README.md").write_text(f"Start the controller_manager, and {instruction}")
+    reported = [each for each in check(path).findings if each.code is CONTROLLERS_NOT_FOUND]
+    reasons = [each.code for each in try_robot(path, standing=1.0).faults]
+    if gazebo:
+        assert [each.values.get("controllers") for each in reported] == [("base",)] * found
+    assert (CONTROLLERS_NOT_FOUND in reasons) is found

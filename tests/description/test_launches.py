@@ -181,6 +181,14 @@ def test_other_programs_of_ros1_start_no_controller(package, kind, words):
     assert (use.spawned, use.loaded) == ((), ())
 
 
+def test_a_node_of_ros1_calls_a_service_that_starts_controllers(package):
+    request = "call /controller_manager/switch_controller &quot;start_controllers: ['a', 'b']&quot;"
+    node = f'<node name="s" pkg="rosservice" type="rosservice" args="{request}"/>'
+    folder = package(sim_dot_launch=ROS1, control_dot_launch=f"<launch>{node}</launch>")
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == ("a", "b")
+
+
 def test_commands_in_launch_files_of_ros2_in_xml(package):
     command = "ros2 control load_controller --set-state active arm_controller"
     text = ROS2_XML.replace("</launch>", f'<executable cmd="{command}"/></launch>')
@@ -275,6 +283,13 @@ COMMAND = """def generate_launch_description():
         '["ros2", "control", "switch_controllers", "--deactivate", "other", "--activate", '
         '"arm_controller", "--strict"]',
         '["ros2", "run", "controller_manager", "spawner", "arm_controller", "-t", "t/T"]',
+        '["bash", "-c", "sleep 5 && ros2 control set_controller_state arm_controller active"]',
+        "[\"sh -c 'sleep 5; ros2 run controller_manager spawner arm_controller'\"]",
+        '["ros2 service call /controller_manager/switch_controller '
+        'controller_manager_msgs/srv/SwitchController \\"{activate_controllers: [arm_controller], '
+        'strictness: 2}\\""]',
+        '["rosservice call /controller_manager/switch_controller [arm_controller]", "[]", "2"]',
+        '["rosrun", "controller_manager", "spawner", "arm_controller"]',
     ],
 )
 def test_a_command_of_ros2_starts_a_controller(package, command):
@@ -299,6 +314,13 @@ def test_a_command_of_ros2_starts_a_controller(package, command):
         ('["ros2 control set_controller_state arm_controller inactive"]', False, False),
         ('["ros2 control switch_controllers --deactivate arm_controller"]', False, False),
         ('["ros2 control list_controllers -c arm_controller"]', False, False),
+        (
+            '["ros2 service call /controller_manager/load_controller '
+            'controller_manager_msgs/srv/LoadController", "{name: arm_controller}"]',
+            True,
+            True,
+        ),
+        ('["ros2 service call /arm/switch_controller Type arm_controller"]', False, False),
         ('["ros2", "control"]', False, False),
     ],
 )
@@ -308,6 +330,19 @@ def test_a_command_of_ros2_only_loads_a_controller(package, command, loaded, und
     assert use.spawned == ()
     assert use.loaded == ("arm_controller",) * loaded
     assert use.undecided == {*["arm_controller"] * undecided}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        '["ros2", "control", "load_controller", clock(), "--set-state", "active"]',
+        '["ros2", "run", "controller_manager", "spawner", clock()]',
+    ],
+)
+def test_a_controller_with_an_unknown_name_may_be_any(package, command):
+    folder = package(arm_dot_launch_dot_py=COMMAND.format(command=command))
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert (use.spawned, use.unsure) == ((), True)
 
 
 def test_a_loaded_controller_may_be_started_later(package):

@@ -32,6 +32,7 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.dialects.ros_control.selection import Selection
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 REPORTED = (
@@ -73,6 +74,7 @@ def check(
     package_path: Sequence[Path] = (),
     controller_files: Sequence[Path] = (),
     launches: Callable[[Path], OwnLaunches] | None = None,
+    selected: Selection | None = None,
 ) -> Report:
     """Checks a description for errors and misleading values.
 
@@ -82,6 +84,7 @@ def check(
         package_path: As for `load`.
         controller_files: Controller files to use instead of those found near the robot.
         launches: Returns the launch files of a description's author; None to search them.
+        selected: What launch files load, if `controller_files` was taken from them.
 
     Raises:
         DescriptionError: The file is not a description, or its XML or xacro cannot be read.
@@ -93,7 +96,7 @@ def check(
         return Report(file=opened.files[0], name=name, findings=(), complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
         understand(opened)  # raises an error that says what the file contains
-    subject = _subject(opened, controller_files, launches)
+    subject = _subject(opened, controller_files, launches, selected)
     # Numbers near the largest float overflow; rules report nothing about non-finite results.
     with np.errstate(all="ignore"):
         findings = _distinct(
@@ -119,7 +122,10 @@ def check(
 
 
 def _subject(
-    opened: Opened, given: Sequence[Path], launches: Callable[[Path], OwnLaunches] | None
+    opened: Opened,
+    given: Sequence[Path],
+    launches: Callable[[Path], OwnLaunches] | None,
+    selected: Selection | None,
 ) -> Subject:
     tree = nodes.copy(opened.root)
     mended: set[str] = set()
@@ -146,7 +152,7 @@ def _subject(
     def search(description: Path) -> OwnLaunches:
         return found.setdefault(description, find(description))
 
-    control, launched = controller_files_of(robots, opened.packages, given, search)
+    control, launched = controller_files_of(robots, opened.packages, given, search, selected)
     file = Path(opened.files[0])
     plain = unexpanded(file, search(file).launches) if needs_expansion(file) else ()
     subject = Subject(

@@ -34,6 +34,8 @@ _SIMULATED = re.compile(
 """Simulated ros2_control hardware: a real robot's tags may describe different interfaces."""
 _BROADCASTER = "Broadcaster"
 """End of the types of ROS 2's controllers that command nothing."""
+_SHOWN = 3
+"""Maximum number of controllers that a message lists."""
 _GAINS = ("p", "i", "ff_velocity_scale")
 """Gains of ROS 2, one of which moves a joint."""
 
@@ -252,6 +254,28 @@ def is_supported(controller: Controller) -> bool:
     except UnknownNameError:
         return False
     return True
+
+
+def unstarted(tag: PluginTag, launch: Path, controllers: Sequence[Controller]) -> Diagnostic:
+    """The diagnostic that nothing starts the controllers of a manager.
+
+    Args:
+        tag: The controller manager.
+        launch: The launch file that starts the robot in Gazebo.
+        controllers: The controllers that could move it.
+    """
+    names = list(dict.fromkeys(each.name for each in controllers))
+    program = "ros2 run" if controllers[0].file.is_ros2 else "rosrun"
+    listed = ", ".join(f'"{name}"' for name in names[:_SHOWN])
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return CONTROLLERS_NOT_FOUND.diagnostic(
+        f'"{launch.name}" starts the robot in Gazebo, but no launch file starts a controller that '
+        f"moves it, such as {listed}{more}, so nothing commands its joints",
+        origin=tag.origin,
+        values={"plugin": tag.filename, "controllers": tuple(names), "launch": str(launch)},
+        hint=f"Add spawners to the launch file, or start them: {program} controller_manager "
+        f"spawner {' '.join(names[:_SHOWN])}",
+    )
 
 
 def uncommanded(

@@ -123,6 +123,11 @@ class ControlFile:
     """The tag that refers to the file."""
     robot: RobotDescription | None = None
     """The robot whose arguments replace ``$(arg name)`` in the file."""
+    name: str = ""
+    """The name of the only controller in the file, which a launch file states; empty for that of
+    the file."""
+    used: frozenset[str] = frozenset()
+    """Names of the controllers that launch files start or load; empty if they are unknown."""
 
     @cached_property
     def lines(self) -> list[str]:
@@ -149,11 +154,16 @@ class ControlFile:
 
     @cached_property
     def controllers(self) -> tuple[Controller, ...]:
+        """The controllers that may run: all that are written, unless launch files select some."""
+        return tuple(each for each in self.written if not self.used or each.name in self.used)
+
+    @cached_property
+    def written(self) -> tuple[Controller, ...]:
         """All controllers with a type."""
         if self.is_ros2:
             return tuple(self._of_ros2())
         # The file may hold a single controller, whose name is set by a launch file.
-        one = self._controller(self.path.stem, self.root)
+        one = self._controller(self.name or self.path.stem, self.root)
         return (one,) if one is not None else tuple(self._named())
 
     def words(self, *path: str) -> list[str]:

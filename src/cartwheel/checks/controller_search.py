@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.checks.controller_files import ControlFile
@@ -13,6 +14,8 @@ from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.launches import LaunchSearch, OwnLaunches, chosen
 from cartwheel.description.model import Element
+from cartwheel.dialects.ros_control.files import name_and_file
+from cartwheel.dialects.ros_control.launched.mentions import started_by_others
 from cartwheel.dialects.ros_control.selection import Selection, selection
 from cartwheel.dialects.ros_control.suggestion import files_for, is_controlled
 from cartwheel.errors import DescriptionError, Diagnostic
@@ -23,6 +26,7 @@ def controller_files_of(
     packages: Packages,
     given: Sequence[Path],
     search: Callable[[Path], OwnLaunches] | None = None,
+    chosen_before: Selection | None = None,
 ) -> tuple[list[tuple[Robot, ControlFile]], list[tuple[Robot, Selection]]]:
     """The controller files of each robot, and what launch files load for those with a controller
     manager.
@@ -32,6 +36,7 @@ def controller_files_of(
         packages: Resolves package URIs.
         given: Files from the user; no other files are searched.
         search: Returns the launch files of a description's author; None to search them.
+        chosen_before: What launch files load, if `given` was taken from them.
     """
     found: list[tuple[Robot, ControlFile]] = []
     selected: list[tuple[Robot, Selection]] = []
@@ -39,24 +44,42 @@ def controller_files_of(
     search = search or LaunchSearch(packages.package_path).of
     for robot in robots:
         described = robot.description
-        found += [
-            (robot, ControlFile(path=_plain(path), named=True, robot=described)) for path in given
-        ]
+        own = [_file(path, robot, named=True) for path in given]
         for element in named_files(robot):
             path = resolved(packages, element)
             if isinstance(path, Path):
-                file = ControlFile(path=path, named=True, element=element, robot=described)
-                found.append((robot, file))
+                own.append(replace(_file(path, robot, named=True), element=element))
+        launched = chosen_before
+        if not given and is_controlled(described):
+            launched = launched or _launched(robot, search)
         if not given:
-            near = dict.fromkeys(_near(robot))
-            if is_controlled(described):
-                launched = _launched(robot, search)
-                near |= dict.fromkeys(map(_plain, launched.files))
-                selected.append((robot, launched))
-            found += [
-                (robot, ControlFile(path=path, named=False, robot=described)) for path in near
-            ]
+            stated = {} if launched is None else {name_and_file(p)[1]: p for p in launched.files}
+            near = {path: path for path in _near(robot)} | stated
+            own += [_file(path, robot, named=False) for path in near.values()]
+        if launched is not None and is_controlled(described):
+            selected.append((robot, launched))
+            own = [*_used(own, launched, Path(described.origin.file))]
+        found += [(robot, file) for file in own]
     return found, selected
+
+
+def _file(path: Path, robot: Robot, *, named: bool) -> ControlFile:
+    """A file, or one controller of which ``NAME=FILE`` states the name."""
+    name, file = name_and_file(path)
+    return ControlFile(path=file, named=named, robot=robot.description, name=name)
+
+
+def _used(files: Sequence[ControlFile], launched: Selection, robot: Path) -> Iterator[ControlFile]:
+    """The files with the names of those of their controllers that run.
+
+    They are those that launch files start, and those that programs and instructions may start. All
+    of them may run if no launch file starts any of them.
+    """
+    written = {each.name for file in files for each in file.written}
+    used = launched.used & written
+    if used and used != written:
+        used |= started_by_others(robot, written - used)
+    yield from (replace(file, used=used) for file in files)
 
 
 def _near(robot: Robot) -> Iterator[Path]:
@@ -104,12 +127,6 @@ def is_of_ros1(robot: Robot) -> bool:
     return any(
         "ros_control" in tag.filename and "ros2" not in tag.filename for tag, _ in robot.plugins()
     )
-
-
-def _plain(path: Path) -> Path:
-    """The path in ``NAME=FILE``, which names the controller in a file without one."""
-    name, _, file = str(path).partition("=")
-    return Path(file) if name and file and not path.exists() else path
 
 
 def _belongs(path: Path, robot: Path) -> bool:

@@ -151,6 +151,11 @@ def missing_movers(
     if all(reason is not None for _, reason in idle):
         for tag, reason in idle:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+    for each in findings():
+        # The tests started them nevertheless.
+        if each.code is devices.CONTROLLERS_NOT_FOUND and "launch" in each.values:
+            name = short_name(str(each.values["plugin"]))
+            yield Fault(test="controller", subject=name, reason=each)
     unstarted = {
         each.values.get("controller"): each
         for each in said

@@ -8,8 +8,9 @@ from functools import partial
 from pathlib import Path
 
 from cartwheel.api import Model, World
-from cartwheel.checks.checking import check
+from cartwheel.checks.checking import Report, check
 from cartwheel.checks.robot import Robot
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.corpus import commands, driving, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.fall_causes import has_devices
@@ -37,9 +38,9 @@ from cartwheel.description import load_robot
 from cartwheel.description.launches import (
     LaunchSearch,
     LaunchUse,
-    OwnLaunches,
     chosen,
     launches_near,
+    moves,
     own_launches,
     unexpanded,
     unread,
@@ -47,7 +48,11 @@ from cartwheel.description.launches import (
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.selection import selection, with_published_control
+from cartwheel.dialects.ros_control.selection import (
+    Selection,
+    selection,
+    with_published_control,
+)
 from cartwheel.dialects.ros_control.suggestion import is_controlled
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT, refused
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
@@ -116,6 +121,7 @@ def try_robot(
         )
     verdict = replace(_described(verdict, robot), observed=(*unexpanded(file, launches),))
     spawned: tuple[str, ...] = ()
+    selected: Selection | None = None
     if controllers is None:
         selected = selection(robot, use, launches, within=own.folder)
         controllers, spawned = selected.files, selected.names
@@ -132,7 +138,8 @@ def try_robot(
             )
             held: set[str] = set()
             for found in _moved(verdict, world, robot_model, robot, standing, held=held):
-                verdict = replace(found, diagnostics=world.diagnostics)
+                said = (each for each in world.diagnostics if not _is_unused(each, selected))
+                verdict = replace(found, diagnostics=tuple(said))
         if _lies(verdict) or _is_stuck(verdict):
             verdict = _hung(verdict, robot, controllers)
         elif held:
@@ -148,7 +155,18 @@ def try_robot(
         verdict = replace(verdict, hindered=hindered(verdict, robot, alone))
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
-    findings = _Findings(file, arguments, package_path, controllers, find=find, is_inside=is_inside)
+    findings = _Findings(
+        partial(
+            check,
+            file,
+            arguments=arguments,
+            package_path=package_path,
+            controller_files=controllers,
+            launches=find,
+            selected=selected,
+        ),
+        is_inside,
+    )
     verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
     return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
 
@@ -183,24 +201,10 @@ class _Findings:
     """The findings of `cartwheel check` in a robot, which is run when they are first needed."""
 
     def __init__(
-        self,
-        file: Path,
-        arguments: Mapping[str, str],
-        package_path: Sequence[Path],
-        controllers: Sequence[Path],
-        *,
-        find: Callable[[Path], OwnLaunches],
-        is_inside: Callable[[Origin | None], bool] | None,
+        self, checked: Callable[[], Report], is_inside: Callable[[Origin | None], bool] | None
     ) -> None:
         self._is_inside = is_inside
-        self._check = partial(
-            check,
-            file,
-            arguments=arguments,
-            package_path=package_path,
-            controller_files=controllers,
-            launches=find,
-        )
+        self._check = checked
         self._found: tuple[Diagnostic, ...] | None = None
 
     def __call__(self) -> tuple[Diagnostic, ...]:
@@ -213,6 +217,18 @@ class _Findings:
                 # The description was loaded, so the reason is in a part that `check` reads only.
                 self._found = ()
         return self._found
+
+
+def _is_unused(said: Diagnostic, selected: Selection | None) -> bool:
+    """Whether a diagnostic is about a controller that does not start, as in ROS, where no launch
+    file starts it.
+    """
+    return (
+        said.code is CONTROLLER_NOT_STARTED
+        and selected is not None
+        and any(map(moves, selected.used))
+        and said.values.get("controller") not in selected.used
+    )
 
 
 def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:

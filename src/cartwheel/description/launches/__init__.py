@@ -11,6 +11,7 @@ from cartwheel.description.launches.search import (
     chosen,
     controllers_for,
     launches_near,
+    moves,
     shared_parts,
     starters,
 )
@@ -32,6 +33,7 @@ __all__ = [
     "controllers_for",
     "is_launch_file",
     "launches_near",
+    "moves",
     "needs_expansion",
     "own_launches",
     "read_launch",

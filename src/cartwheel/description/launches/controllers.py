@@ -1,4 +1,6 @@
-"""The controllers in the arguments of spawners, and in commands of ``ros2 control``."""
+"""The controllers in the arguments of spawners, in commands of ``ros2 control``, and in calls of a
+controller manager's services.
+"""
 
 from __future__ import annotations
 
@@ -38,6 +40,12 @@ _STARTING = frozenset({"load_start_controller", "configure_start_controller"})
 _LOADING = frozenset({"load_controller", "load_configure_controller"})
 _ACTIVATE = frozenset({"--activate", "--start"})
 _CONTROLLER = re.compile(r"[\w/]+")
+_STARTED = re.compile(r"(?:start|activate)_controllers['\"]?\s*:\s*\[([^\]]*)\]")
+"""The controllers that a request starts. That of ROS 1 has the name of the list first."""
+_FIRST = re.compile(r"\s*['\"]?\[([^\]]*)\]")
+"""The first argument of a request without names: the controllers to start."""
+_REQUESTED = re.compile(r"\bname['\"]?\s*:\s*['\"]?([\w/]+)")
+_MANAGER = "controller_manager"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,6 +63,8 @@ class ControllerCommand:
     """Names of files with their parameters."""
     arguments: tuple[str, ...] = ()
     """ROS arguments of their nodes, such as ``-r from:=to``."""
+    unsure: bool = False
+    """Whether it starts or loads further controllers whose names are unknown."""
 
 
 def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
@@ -89,6 +99,7 @@ def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
         loaded=() if starts else known,
         files=tuple(files),
         arguments=tuple(arguments),
+        unsure=any(UNKNOWN in name for name in names),
     )
 
 
@@ -102,6 +113,8 @@ def by_command(words: Iterable[str]) -> ControllerCommand | None:
     stated, state = _values(rest)
     space = _manager_space(rest, "")
     first = tuple(_names(stated[:1]))
+    if any(UNKNOWN in word for word in stated[:1]):
+        return ControllerCommand(space=space, unsure=True)
     if verb in _STARTING or (verb in _LOADING and state in _RUNNING):
         return ControllerCommand(space=space, started=first, files=tuple(stated[1:2]))
     if verb in _LOADING:
@@ -115,6 +128,36 @@ def by_command(words: Iterable[str]) -> ControllerCommand | None:
         return ControllerCommand(space=space, started=first)
     if verb == "switch_controllers":
         return ControllerCommand(space=space, started=tuple(_names(_activated(rest))))
+    return None
+
+
+def by_service(words: Iterable[str]) -> ControllerCommand | None:
+    """The controllers in a call of a controller manager's service; None for other calls.
+
+    Args:
+        words: The name of the service, in ROS 2 its type, and the request, which may be split.
+    """
+    service, *rest = [*words] or [""]
+    manager, _, verb = service.rpartition("/")
+    space, _, node = manager.rpartition("/")
+    if node != _MANAGER:
+        return None
+    space = "" if UNKNOWN in space else space.strip("/")
+    request = " ".join(rest)
+    if verb == "switch_controller":
+        found = _STARTED.search(request) or _FIRST.match(request)
+        listed = found[1].split(",") if found is not None else []
+        return ControllerCommand(
+            space=space,
+            started=tuple(_names(each.strip("'\" ") for each in listed)),
+            unsure=UNKNOWN in request,
+        )
+    named = _REQUESTED.search(request)
+    names = tuple(_names([named[1]] if named is not None else rest[-1:]))
+    if verb.endswith("_and_start_controller"):
+        return ControllerCommand(space=space, started=names)
+    if verb.startswith("load_"):
+        return ControllerCommand(space=space, loaded=names, decided=False)
     return None
 
 

@@ -45,6 +45,8 @@ class LaunchUse:
     """Names of those that it loads, but does not start."""
     undecided: frozenset[str] = frozenset()
     """Those of them for which it may be a mistake: it does not state that they are inactive."""
+    unsure: bool = False
+    """Whether it starts or loads further controllers whose names are unknown."""
     node_arguments: tuple[tuple[str, tuple[str, ...]], ...] = ()
     """Names of controllers whose nodes it gives ROS arguments, such as ``-r from:=to``, with these.
     """

@@ -118,7 +118,7 @@ class Classes:
         """Adds what a node starts."""
         arguments = words.get("arguments", [])
         if not isinstance(arguments, list):
-            arguments = []
+            arguments = [arguments]
         texts = [joined(each) for each in arguments]
         if len(texts) == 1 and " " in texts[0]:
             texts = split(texts[0])

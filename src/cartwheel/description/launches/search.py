@@ -176,6 +176,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 spawned=spawned,
                 loaded=only_loaded((name for _, name in facts.loaded), spawned),
                 undecided=frozenset(facts.undecided),
+                unsure=facts.unsure,
                 node_arguments=tuple(dict.fromkeys(each for _, each in facts.arguments)),
                 absent=tuple(facts.lost),
                 unfound=tuple(facts.unfound),
@@ -254,11 +255,16 @@ def _order(use: LaunchUse) -> tuple[bool, int, bool, int, int, str]:
         # A file may be loaded without a controller in it being started.
         -bool(use.spawned) - bool(use.controllers),
         # Launch files of MoveIt's assistant may only start a controller that moves nothing.
-        all(_PUBLISHER.search(name) for name in use.spawned),
+        not any(map(moves, use.spawned)),
         use.unknown,
         len(use.file.parts),
         str(use.file),
     )
+
+
+def moves(name: str) -> bool:
+    """Whether a controller may move joints, by its name: it is no publisher."""
+    return _PUBLISHER.search(name) is None
 
 
 def shared_parts(one: Path, other: Path) -> int:

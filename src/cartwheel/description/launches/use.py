@@ -17,11 +17,17 @@ from types import MappingProxyType
 from cartwheel.description.files.package_folders import is_file, package_above, package_name
 from cartwheel.description.launches import variants
 from cartwheel.description.launches.bridging import BRIDGES, RenamedTopic, renamed_topics
-from cartwheel.description.launches.controllers import ControllerCommand, by_command, by_spawner
+from cartwheel.description.launches.controllers import (
+    ControllerCommand,
+    by_command,
+    by_service,
+    by_spawner,
+)
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.gazebos import Gazebos
 from cartwheel.description.launches.launch_use import Unfound
 from cartwheel.description.launches.python_variables import Place, Uncertain
+from cartwheel.description.launches.shell_commands import shell_commands
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
     Spawn,
@@ -93,6 +99,8 @@ class Facts:
     """The namespaces of managers, and the controllers whose nodes have ROS arguments, with them."""
     undecided: set[str] = field(default_factory=set)
     """Those of them whose command does not state that it does not start them."""
+    unsure: bool = False
+    """See `LaunchUse.unsure`."""
     simulated: bool = False
     spawns: list[Spawn] = field(default_factory=list)
     world: str = ""
@@ -308,6 +316,8 @@ class Facts:
             self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
             self._control(by_spawner(words, space))
+        if package == "rosservice" and words[:1] == ["call"]:
+            self._control(by_service(words[1:]))
 
     def bridge(self, text: str) -> None:
         """Adds a configuration file of ros_gz_bridge if it exists."""
@@ -324,14 +334,19 @@ class Facts:
             self.simulated = True
             self._begin(world_in(words))
         self.gazebos.add_command(words)
-        # With a shell, the words of a command are joined.
-        program, *rest = " ".join(words).split() or [""]
-        if program.rsplit("/", 1)[-1] != "ros2":
-            return
-        if rest[:1] == ["control"]:
-            self._control(by_command(rest[1:]))
-        elif rest[:1] == ["run"] and rest[2:3]:
-            self.node(rest[1], rest[2], rest[3:], "")
+        for program, *rest in shell_commands(words):
+            self.effort.spend(len(rest))
+            name = program.rsplit("/", 1)[-1]
+            if name == "ros2" and rest[:1] == ["control"]:
+                self._control(by_command(rest[1:]))
+            elif name == "ros2" and rest[:2] == ["service", "call"]:
+                self._control(by_service(rest[2:]))
+            elif name == "rosservice" and rest[:1] == ["call"]:
+                self._control(by_service(rest[1:]))
+            elif name == "ros2" and rest[:1] == ["run"] and rest[2:3]:
+                self.node(rest[1], rest[2], rest[3:], "")
+            elif name == "rosrun" and rest[1:2]:
+                self.node(rest[0], rest[1], rest[2:], "")
 
     def _begin(self, world: str) -> None:
         self.world = self.world or world.strip()
@@ -341,6 +356,7 @@ class Facts:
             self.spawned += ((command.space, name) for name in command.started)
             self.loaded += ((command.space, name) for name in command.loaded)
             self.undecided |= set(() if command.decided else command.loaded)
+            self.unsure |= command.unsure
             if command.arguments:
                 for name in (*command.started, *command.loaded):
                     self.arguments.append((command.space, (name, command.arguments)))

@@ -20,6 +20,7 @@ from cartwheel.description.launches import (
     chosen,
     controllers_for,
     launches_near,
+    moves,
     root_of,
     shared_parts,
     starters,
@@ -27,7 +28,7 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.files import for_robot, read_parameters
-from cartwheel.dialects.ros_control.launched.names import as_named, last_names, named_in
+from cartwheel.dialects.ros_control.launched.names import as_named, last_names, named_in, used_names
 from cartwheel.dialects.ros_control.launched.problems import (
     misplaced,
     misplaced_names,
@@ -75,6 +76,12 @@ class Selection:
     """The launch file that starts the controllers."""
     loaded: tuple[Path, ...] = ()
     """All YAML files that it loads."""
+    used: frozenset[str] = frozenset()
+    """Names of the controllers that any launch file of the robot starts or loads; empty if they are
+    not all known, or if there are none."""
+    idle_launch: Path | None = None
+    """The launch file that starts the robot in Gazebo, if no launch file starts or loads a
+    controller that may move it."""
 
 
 def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -> Selection:
@@ -99,7 +106,9 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
         problems = (*unfound(starter), *undefined(robot, starter), *only_loaded(starter))
         idle = () if starter is None else as_named(starter.loaded, ())
         arguments = () if starter is None else starter.node_arguments
-        found = Selection(files=(), names=(), idle=idle, arguments=arguments, problems=problems)
+        known = starter is not None and not starter.unsure and any(map(moves, starter.spawned))
+        names = as_named(starter.spawned, ()) if starter is not None and known else ()
+        found = Selection(files=(), names=names, idle=idle, arguments=arguments, problems=problems)
     return replace(found, problems=(*found.problems, *unread(launches)))
 
 
@@ -176,6 +185,8 @@ def selection(
         wrong = named_in(itertools.chain(*map(misplaced_names, apart)), files, robot)
         names = tuple(name for name in names if name not in wrong)
         files = files if names else ()
+    used = used_names(launches, _about(robot, launches), files, robot)
+    unmoved = use is not None and use.simulated and used is not None and not any(map(moves, used))
     missing = unfound(starting) if is_of_ros1(robot) else ()
     problems = (*lost, *missing, *reported, *apart, *only_loaded(starting))
     return Selection(
@@ -186,6 +197,8 @@ def selection(
         problems=problems,
         launch=None if starting is None else starting.file,
         loaded=() if starting is None else starting.controllers,
+        used=used or frozenset(),
+        idle_launch=use.file if unmoved and use is not None else None,
     )
 
 

@@ -119,7 +119,7 @@ def _joints_in(file: ControlFile) -> Iterator[tuple[str, Value]]:
     waiting: list[Any] = (
         [file.root]
         if file.is_ros2
-        else [mapping for each in file.controllers for mapping in each.parameters]
+        else [mapping for each in file.written for mapping in each.parameters]
     )
     while waiting:
         node = waiting.pop()

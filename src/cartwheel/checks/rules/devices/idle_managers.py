@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from cartwheel.checks import nodes
 from cartwheel.checks.controller_claims import (
+    claims,
     commands_joints,
     has_standard_hardware,
     managers,
     offers,
     other_layout,
     uncommanded,
+    unstarted,
 )
+from cartwheel.checks.controller_files import ControlFile, Controller
 from cartwheel.checks.controller_search import named_files
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
@@ -23,6 +27,7 @@ from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
+from cartwheel.dialects.ros_control.launched.mentions import started_by_others
 from cartwheel.dialects.ros_only import other_ros
 from cartwheel.errors import Diagnostic
 
@@ -35,11 +40,14 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
         if selected.problems or _is_driven_otherwise(robot):
             continue
         files = [file for owner, file in subject.control if owner is robot]
-        controllers = [each for file in files for each in file.controllers]
+        controllers = [each for file in files for each in file.written]
         defined = {each.name for each in controllers}
         started = [
             each for each in controllers if not selected.names or each.name in selected.names
         ]
+        if selected.idle_launch is not None and (moving := _moving(robot, files)):
+            yield from _unstarted(robot, selected.idle_launch, moving)
+            continue
         if any(commands_joints(each) for each in started):
             continue
         layouts = [
@@ -64,6 +72,26 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
                 found = uncommanded(tag, selected.launch, selected.names, selected.loaded)
                 # The controllers may be in a package that uses this one.
                 yield found if selected.names else replace(found, severity="info")
+
+
+def _moving(robot: Robot, files: Sequence[ControlFile]) -> list[Controller]:
+    """The controllers that command joints of a robot."""
+    return [
+        each
+        for file in files
+        for each in file.written
+        if any(claim.joint in robot.joints for claim in claims(each))
+    ]
+
+
+def _unstarted(robot: Robot, launch: Path, moving: Sequence[Controller]) -> Iterator[Diagnostic]:
+    """The managers whose controllers nothing starts: no launch file, program or instruction."""
+    file = Path(robot.description.origin.file)
+    if started_by_others(file, {each.name for each in moving}):
+        return
+    for tag in managers(robot, ros2=moving[0].file.is_ros2):
+        if not other_ros(robot.description, tag) and not without_parameters(tag):
+            yield unstarted(tag, launch, moving)
 
 
 def _without_parameters(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:

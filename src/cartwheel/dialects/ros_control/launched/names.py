@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel.description.launches import LaunchUse
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
@@ -122,6 +123,28 @@ def named_in(
             content = for_robot(read_parameters(path), path, robot)
             entries += [] if is_ros2(content) else ros1_entries(content, str(path), _space(robot))
     return as_named(names, entries)
+
+
+def used_names(
+    launches: Iterable[LaunchUse],
+    about: Iterable[LaunchUse],
+    files: Iterable[Path],
+    robot: RobotDescription,
+) -> frozenset[str] | None:
+    """Returns the names of all controllers that launch files start or load for a robot.
+
+    None if they are not all known.
+
+    Args:
+        launches: All launch files near the robot.
+        about: Those that may be for the robot.
+        files: Files with controllers for the robot.
+        robot: The robot.
+    """
+    own = [*about]
+    if any(each.left_out is not None for each in launches) or any(each.unsure for each in own):
+        return None
+    return frozenset(named_in((n for e in own for n in (*e.spawned, *e.loaded)), files, robot))
 
 
 def last_names(path: Path, robot: RobotDescription) -> frozenset[str]:
