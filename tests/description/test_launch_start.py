@@ -472,3 +472,17 @@ def generate_launch_description():
     assert start("text.replace('', 'a' * 9)")[0] == ["other.urdf"]
     with raises(NOT_A_DESCRIPTION):
         start("'aaaaaaaa.urdf'" + ".replace('a', 'aaaaaaaa')" * 6)
+
+
+def test_a_package_of_another_repository_is_reported(bot: Path) -> None:
+    for folder in (bot, bot.parent / "neighbour"):
+        (folder / ".git").mkdir(parents=True)
+    arm = bot.parent / "neighbour" / "arm"
+    arm.mkdir()
+    (arm / "package.xml").write_text("<package><name>arm</name></package>")
+    (arm / "arm.urdf").write_text((bot / "urdf" / "other.urdf").read_text())
+    text = '<launch><param name="robot_description" textfile="$(find arm)/arm.urdf"/></launch>'
+    launch = written(bot, "arm.launch", text)
+    start = read_launch(launch, {})
+    assert [each.description for each in start.models] == [arm / "arm.urdf"]
+    assert [each.values["name"] for each in start.diagnostics] == ["arm"]

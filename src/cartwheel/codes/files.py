@@ -145,3 +145,9 @@ PACKAGE_URI_IN_SDF = Code(
     "warning",
     "Gazebo Classic does not find package:// URIs in SDF files",
 )
+PACKAGE_OF_NEIGHBOUR = Code(
+    "CW169",
+    "package-of-neighbour",
+    "info",
+    "a package was found in another repository near that of the robot",
+)

@@ -400,3 +400,42 @@ def test_a_file_that_is_removed_is_missed(tmp_path):
     far.unlink()
     with raises(files.FILE_MISSING):
         found.resolve("a.stl")
+
+
+def test_a_package_of_a_neighbouring_repository_is_reported_once(tmp_path):
+    own, other = tmp_path / "src" / "own", tmp_path / "src" / "other"
+    (own / ".git").mkdir(parents=True)
+    (other / ".git").mkdir(parents=True)
+    found = packages(robot(package(own / "pieces" / "robot")))
+    there = package(other / "arm")
+    for line in (3, 4):
+        assert found.find("arm", Origin(file="robot.urdf", line=line)) == there
+    (note,) = found.moves()
+    assert (note.code, note.severity) == (files.PACKAGE_OF_NEIGHBOUR, "info")
+    assert note.values == {"name": "arm", "used": str(there)}
+    assert note.origin is not None
+    assert note.origin.line == 3
+    sourced = {"ROS_PACKAGE_PATH": str(tmp_path / "src")}
+    known = packages(own / "pieces" / "robot" / "urdf" / "robot.urdf", sourced)
+    assert known.find("arm") == there
+    assert not [*known.moves()]
+
+
+@pytest.mark.parametrize("mark", [".git", ""])
+def test_the_own_repository_comes_before_a_neighbour(tmp_path, mark):
+    """Also if the folder of a package is empty, as that of a submodule that was not fetched."""
+    own = tmp_path / "src" / "own"
+    file = robot(package(own / "pieces" / "robot"))
+    package(own / "pieces" / "tools")
+    if mark:
+        (own / mark).mkdir()
+    package(tmp_path / "src" / "other" / "arm")
+    empty = own / "pieces" / "arm"
+    empty.mkdir()
+    found = packages(file)
+    assert found.find("arm") == empty
+    assert not [*found.moves()]
+    if mark:
+        deep = package(own / "a" / "b" / "c" / "d" / "hand")
+        package(tmp_path / "src" / "other" / "hand")
+        assert packages(file).find("hand") == deep

@@ -14,6 +14,7 @@ from cartwheel.description.files.missing_packages import Advice, how_to_install
 from cartwheel.description.files.package_folders import (
     PackagesByName,
     around,
+    folders_below,
     folders_in,
     is_dir,
     package_name,
@@ -23,7 +24,7 @@ from cartwheel.description.files.package_folders import (
     stand_ins,
 )
 from cartwheel.description.files.readable_files import with_targets
-from cartwheel.description.files.repositories import MARKERS
+from cartwheel.description.files.repositories import MARKERS, repository_of, root_of
 
 _ROS1 = "ROS_PACKAGE_PATH"
 _PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
@@ -60,6 +61,8 @@ class PackageSearch:
         self.package_path = tuple(package_path)
         self.environment = environment
         self._packages: dict[str, Path | None] = {}
+        self.neighbours: dict[str, Path] = {}
+        """Packages that were found in another repository near the file, by name."""
         self._searched: Searched = {} if searched is None else searched
         self._package_advice: dict[str, Advice] = {}
         self._model_advice: dict[str, Advice] = {}
@@ -167,11 +170,11 @@ class PackageSearch:
             for root in roots():
                 found = self._in(root).first(name)
                 if found is not None:
-                    return found
+                    return self._own(name, found) if index == 1 else found
         for root in self._crawled():
             found = self._in(root, crawled=True).first(name)
             if found is not None:
-                return found
+                return self._own(name, found)
         # A folder with the right name but without package.xml may be a description copied out of
         # its workspace: second choice, but better than failing.
         for roots in searches:
@@ -189,6 +192,29 @@ class PackageSearch:
             found = PackagesByName(packages_below(root) if crawled else packages_in(root))
             self._searched[root, crawled] = (now, found)
         return found
+
+    def _own(self, name: str, found: Path) -> Path:
+        """The package with this name in the repository of the file, if `found` is in another one.
+
+        The folder of a package may be empty, such as that of a submodule that was not fetched. Then
+        a package of another author with this name is not meant.
+        """
+        home = self._home
+        given = (*self.package_path, *self.environment_roots())
+        if home is None or found.is_relative_to(home) or any(map(found.is_relative_to, given)):
+            return found
+        own = self._in(home, crawled=True).first(name)
+        own = own or next((each for each in folders_below(home) if each.name == name), None)
+        if own is None:
+            self.neighbours[name] = found
+        return own or found
+
+    @cached_property
+    def _home(self) -> Path | None:
+        """The repository of the file, or the folder with its package and those beside it."""
+        if self.file is None:
+            return None
+        return repository_of(self.file) or root_of(self.file)
 
     def _own_folder(self, name: str) -> Path | None:
         """The folder with this name that contains the file but no manifest, if the file is in no

@@ -78,6 +78,8 @@ class Packages:
         """The answers of `resolve`, by the URI, the file that contains it, and `folder`."""
         self.stand_ins: dict[str, Origin | None] = {}
         """The packages whose stand-ins were read, with the first element that refers to each."""
+        self._neighbours: dict[str, Origin | None] = {}
+        """The first elements that refer to packages of other repositories."""
         self.found_elsewhere: dict[str, tuple[Path, Origin | None]] = {}
         """Files that are not where the description says: the file that is used, and the first
         element that refers to it, by the statement."""
@@ -96,6 +98,8 @@ class Packages:
         if (found := self.found(name)) is None:
             text, advice = f'the package "{name}" was not found', self._search.package_advice(name)
             raise missing("package", name, text, origin, advice)
+        if name in self._search.neighbours:
+            self._neighbours.setdefault(name, origin)
         return found
 
     def found(self, name: str) -> Path | None:
@@ -223,7 +227,17 @@ class Packages:
         return any(folder == root or root in folder.parents for root in self._own)
 
     def moves(self) -> Iterator[Diagnostic]:
-        """Reports the files that are not where the description says."""
+        """Reports the files that are not where the description says, and the packages that are in
+        another repository.
+        """
+        for name, folder in self._search.neighbours.items():
+            yield codes.PACKAGE_OF_NEIGHBOUR.diagnostic(
+                f'the package "{name}" is not in the repository of the robot, so "{folder}" is '
+                "used",
+                origin=self._neighbours.get(name),
+                hint="To use another one, add its folder to the package path.",
+                values={"name": name, "used": str(folder)},
+            )
         for uri, (path, origin) in self.found_elsewhere.items():
             lacking = FIND.search(uri)
             stops = f'Without the package "{lacking[1]}", ROS stops here. ' if lacking else ""

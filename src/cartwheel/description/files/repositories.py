@@ -16,6 +16,8 @@ _LIKELY = (".gitignore", ".gitattributes")
 """Entries that folders in a repository may contain as well."""
 MARKERS = (*_ROOT, *_LIKELY)
 """Entries of the root of a repository. An archive that was downloaded contains no ``.git``."""
+_LEVELS = 4
+"""Number of folders above a description that are searched for its package."""
 
 
 def repository_of(file: Path, within: Path | None = None) -> Path | None:
@@ -35,6 +37,22 @@ def repository_of(file: Path, within: Path | None = None) -> Path | None:
     roots = [each for each in above if _has(each, _ROOT)]
     likely = [each for each in above if _has(each, _LIKELY)]
     return next(iter((*outer[-1:], *roots[:1], *likely[-1:])), None)
+
+
+def root_of(description: Path) -> Path | None:
+    """The folder with a description's package and the packages beside it; None outside of packages.
+
+    Its launch files may start the description.
+    """
+    for folder in description.absolute().parents[:_LEVELS]:
+        if (folder / "package.xml").is_file() or (folder / "manifest.xml").is_file():
+            beside = [
+                each
+                for each in folder.parent.iterdir()
+                if each != folder and (each / "package.xml").is_file()
+            ]
+            return folder.parent if beside else folder
+    return None
 
 
 def _has(folder: Path, names: tuple[str, ...]) -> bool:

@@ -1,11 +1,11 @@
 """Reads launch files: the descriptions, xacro arguments and controller files that they name."""
 
+from cartwheel.description.files.repositories import root_of
 from cartwheel.description.launches.launch_use import LaunchUse, unread
 from cartwheel.description.launches.own import (
     LaunchSearch,
     OwnLaunches,
     own_launches,
-    root_of,
 )
 from cartwheel.description.launches.search import (
     chosen,

@@ -13,12 +13,9 @@ from cartwheel.description.files.package_folders import (
     package_name,
     packages_below,
 )
-from cartwheel.description.files.repositories import repository_of
+from cartwheel.description.files.repositories import repository_of, root_of
 from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.search import launches_near
-
-_LEVELS = 4
-"""Number of folders above a description that are searched for its package."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -89,21 +86,6 @@ def own_launches(
             files in it count.
     """
     return _own(description, uses, repository_of(description, within), within)
-
-
-def root_of(description: Path) -> Path | None:
-    """The folder whose launch files may start a description: that of its package and the packages
-    beside it; None outside of packages.
-    """
-    for folder in description.absolute().parents[:_LEVELS]:
-        if (folder / "package.xml").is_file() or (folder / "manifest.xml").is_file():
-            beside = [
-                each
-                for each in folder.parent.iterdir()
-                if each != folder and (each / "package.xml").is_file()
-            ]
-            return folder.parent if beside else folder
-    return None
 
 
 def _own(

@@ -108,7 +108,8 @@ def read_launch(
             hint="" if missing else "Its name must end in .launch, .launch.xml or .py.",
         )
     effort = Effort()
-    read = functools.partial(facts_of, file, Packages(file, package_path), arguments, effort)
+    packages = Packages(file, package_path)
+    read = functools.partial(facts_of, file, packages, arguments, effort)
     try:
         facts = read()
         models, lost = _models(file, facts)
@@ -138,6 +139,7 @@ def read_launch(
             *itertools.chain(*(not_expanded(each.use) for each in models)),
             *_not_spawned(file, lost, facts),
             *facts.assumed.values(),
+            *(replace(each, origin=Origin(file=shown_path(file))) for each in packages.moves()),
         ),
     )
 
