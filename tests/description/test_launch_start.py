@@ -411,6 +411,51 @@ def test_required_arguments_are_named(bot: Path, name: str, text: str) -> None:
     with raises(NOT_A_DESCRIPTION) as caught:
         read_launch(written(bot, name, text), {})
     assert "Its arguments: height, kind. Without a value: kind." in caught.value.hint
+    assert "Pass kind:=VALUE." in caught.value.hint
+    assert 'without a value for "kind"' in str(caught.value)
+    assert caught.value.origin is not None
+    assert caught.value.origin.line == (1 if name == "a.launch" else 2)
+
+
+def test_a_required_argument_without_effect_on_the_robot_is_reported(bot: Path) -> None:
+    """Also one of an included launch file."""
+    robot = '<param name="robot_description" textfile="$(find bot)/urdf/bot.xacro"/>'
+    written(bot, "b.launch", '<launch>\n<arg name="port"/></launch>')
+    include = '<include file="$(find bot)/launch/b.launch"/>'
+    start = read_launch(
+        written(bot, "a.launch", f'<launch><arg name="user"/>\n{robot}{include}</launch>'), {}
+    )
+    assert [each.description.name for each in start.models] == ["bot.xacro"]
+    found = [(each.code, each.values["name"], each.origin.line) for each in start.diagnostics]
+    assert found == [(LAUNCH_VALUE_UNKNOWN, "user", 1), (LAUNCH_VALUE_UNKNOWN, "port", 2)]
+    assert "user:=VALUE" in str(start.diagnostics[0].hint)
+
+
+@pytest.mark.parametrize(
+    ("stated", "robots"),
+    [(["other"], ["other.xacro"]), (["other", "other"], ["other.xacro"]), (["other", "bot"], [])],
+)
+def test_a_value_on_which_all_including_launch_files_agree_is_used(
+    bot: Path, stated: list[str], robots: list[str]
+) -> None:
+    (bot / "urdf" / "other.xacro").write_text((bot / "urdf" / "bot.xacro").read_text())
+    text = '<param name="robot_description" textfile="$(find bot)/urdf/$(arg kind).xacro"/>'
+    path = written(bot, "robot.launch", f'<launch><arg name="kind"/>{text}</launch>')
+    for number, value in enumerate(stated):
+        arg = f'<arg name="kind" value="{value}"/>'
+        include = f'<include file="$(find bot)/launch/robot.launch">{arg}</include>'
+        written(bot, f"{number}.launch", f"<launch>{include}</launch>")
+    if not robots:
+        with raises(NOT_A_DESCRIPTION):
+            read_launch(path, {})
+        return
+    start = read_launch(path, {})
+    assert [each.description.name for each in start.models] == robots
+    (note,) = start.diagnostics
+    assert (note.severity, note.values["name"]) == ("info", "kind")
+    given = read_launch(path, {"kind": "bot"})
+    assert [each.description.name for each in given.models] == ["bot.xacro"]
+    assert not given.diagnostics
 
 
 @pytest.mark.parametrize(

@@ -746,3 +746,11 @@ def test_actions_in_python_that_nothing_reads_are_not_started(package, end, spaw
     folder = package(gazebo_dot_launch_dot_py=UNUSED % end)
     (use,) = launches_near(folder)
     assert sorted(use.spawned) == spawned
+
+
+def test_a_launch_file_without_a_needed_argument_comes_after_the_one_that_states_it(package):
+    included = ROS1.replace("<launch>", '<launch><arg name="speed"/>')
+    whole = '<launch><include file="$(find arm)/launch/a.launch"><arg name="speed" value="2"/>'
+    folder = package(a_dot_launch=included, z_dot_launch=whole + "</include></launch>")
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert (use.file.name, use.lacking) == ("z.launch", False)

@@ -60,6 +60,8 @@ class LaunchUse:
     places: tuple[tuple[str, Path], ...] = ()
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""
+    lacking: bool = False
+    """Whether an argument has neither a default nor a value. ROS does not start it without one."""
     simulated: bool = False
     """Whether it starts Gazebo or spawns a model."""
     guessed: bool = False

@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.launches.bridging import BRIDGES
+from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.python_values import (
     NOTHING,
@@ -66,6 +68,9 @@ class Classes:
             self.facts.declared.add(name)
         if "default_value" in words and name not in self.defaults:
             self.defaults[name] = joined(words["default_value"])
+        if name not in self._given and name not in self.defaults and UNKNOWN not in name:
+            origin = Origin(file=shown_path(self.path), line=self.line)
+            self.facts.required[self.path, name] = origin
         if not self._depth and name not in self._given and name in self.defaults:
             self.facts.defaults[name] = joined(self.defaults[name])
         return NOTHING

@@ -52,7 +52,7 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
     effort = Effort()
     last = "none of them is"
     try:
-        for number, path in enumerate(_files(folder, effort)):
+        for number, path in enumerate(launch_files(folder, effort)):
             if number == _MOST:
                 found.append(_left_out(folder, f"there are more than {_MOST} launch files", last))
                 break
@@ -182,6 +182,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 unfound=tuple(facts.unfound),
                 sought=tuple(dict.fromkeys(facts.sought)),
                 places=tuple(dict.fromkeys(facts.places)),
+                lacking=bool(facts.required),
                 simulated=facts.simulated,
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,
@@ -249,9 +250,11 @@ def starters(
     return [each for _, each in others]
 
 
-def _order(use: LaunchUse) -> tuple[bool, int, bool, int, int, str]:
+def _order(use: LaunchUse) -> tuple[bool, bool, int, bool, int, int, str]:
     return (
         not use.simulated,
+        # Another launch file may include it and state the argument.
+        use.lacking,
         # A file may be loaded without a controller in it being started.
         -bool(use.spawned) - bool(use.controllers),
         # Launch files of MoveIt's assistant may only start a controller that moves nothing.
@@ -272,7 +275,8 @@ def shared_parts(one: Path, other: Path) -> int:
     return len(Path(os.path.commonpath([one.absolute(), other.absolute()])).parts)
 
 
-def _files(folder: Path, effort: Effort) -> Iterator[Path]:
+def launch_files(folder: Path, effort: Effort) -> Iterator[Path]:
+    """The launch files in a folder and its subfolders, sorted by path."""
     for here, names in source_folders(folder):
         effort.spend(_FOLDER + len(names))
         yield from (here / name for name in names if _is_launch(here / name))

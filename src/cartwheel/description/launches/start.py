@@ -20,6 +20,7 @@ from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.python_variables import Place
+from cartwheel.description.launches.required import about_arguments, stated_by_includers
 from cartwheel.description.launches.search import INCLUDES, facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
 from cartwheel.description.launches.unexpanded import not_expanded
@@ -112,6 +113,12 @@ def read_launch(
     read = functools.partial(facts_of, file, packages, arguments, effort)
     try:
         facts = read()
+        lacking = [name for path, name in facts.required if path == file]
+        stated = stated_by_includers(file, lacking, effort, package_path) if lacking else {}
+        if stated:
+            arguments = {**stated, **arguments}
+            read = functools.partial(facts_of, file, packages, arguments, effort)
+            facts = read()
         models, lost = _models(file, facts)
     except TooCostlyError:
         raise _failure(file, "reading the launch file takes too long") from None
@@ -120,7 +127,13 @@ def read_launch(
         named = f"Its arguments: {', '.join(sorted(facts.declared))}. " if facts.declared else ""
         named += f"Without a value: {', '.join(required)}. " if required else ""
         named += _not_found(facts)
-        raise _failure(file, "the launch file names no description that exists", named)
+        reason = "the launch file names no description that exists"
+        origins = [origin for (path, _), origin in facts.required.items() if path == file]
+        if required and origins:
+            listed = " and ".join(f'"{name}"' for name in required)
+            reason += f" without a value for {listed}"
+            named = f"Pass {' '.join(f'{name}:=VALUE' for name in required)}. {named}"
+        raise _failure(file, reason, named, origins[0] if origins else None)
     world = facts.world
     if not world and file.suffix == ".py":
         # Included launch files inherit the arguments, such as `world` of gazebo.launch.py.
@@ -134,6 +147,7 @@ def read_launch(
         renamed=tuple(facts.renamed),
         diagnostics=(
             *_unused(file, arguments, facts),
+            *about_arguments(file, facts, stated),
             *_unknown(file, world, [each for each in models if not each.is_shown] or models, facts),
             *_undecided(file, facts, models, read),
             *itertools.chain(*(not_expanded(each.use) for each in models)),
@@ -362,7 +376,9 @@ def _unused(file: Path, arguments: Mapping[str, str], facts: Facts) -> list[Diag
     ]
 
 
-def _failure(file: Path, reason: str, named: str = "") -> DescriptionError:
+def _failure(
+    file: Path, reason: str, named: str = "", origin: Origin | None = None
+) -> DescriptionError:
     try:
         line = 1 if file.suffix == ".py" else xml.read_file(file).origin.line
     except DescriptionError as error:
@@ -376,6 +392,6 @@ def _failure(file: Path, reason: str, named: str = "") -> DescriptionError:
     return DescriptionError(
         reason,
         code=codes.NOT_A_DESCRIPTION,
-        origin=Origin(file=shown_path(file), line=line),
+        origin=origin or Origin(file=shown_path(file), line=line),
         hint=f"Launch files are read, but not executed. {named}Pass the description that it loads.",
     )

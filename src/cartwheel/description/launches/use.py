@@ -125,6 +125,11 @@ class Facts:
     """Those of which b is used instead of a."""
     assumed: dict[str, Diagnostic] = field(default_factory=dict)
     """Notes about the environment variables of ROS that are not set."""
+    required: dict[tuple[Path, str], Origin] = field(default_factory=dict)
+    """Where arguments are declared that have neither a default nor a value, by the name and the
+    launch file, which may be an included one. ROS does not start a launch file without them."""
+    includes: list[tuple[Path, Mapping[str, str]]] = field(default_factory=list)
+    """The included launch files with the arguments that they receive."""
     defaults: dict[str, str] = field(default_factory=dict)
     """The arguments of the launch file itself that have their default, such as the robot's type."""
 
@@ -439,4 +444,6 @@ class Facts:
         self.gazebos.add_launch_file(path.name, arguments, is_own=is_own)
         if is_own:
             self.effort.spend(len(inherited))
-            self.read(path, {**inherited, **arguments}, self, depth + 1)
+            given = {**inherited, **arguments}
+            self.includes.append((path, given))
+            self.read(path, given, self, depth + 1)

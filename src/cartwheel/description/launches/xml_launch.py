@@ -151,6 +151,8 @@ class _Reader:
             self._arguments[name] = self._value(node, "default")
             if not self._depth:
                 self._facts.defaults[name] = self._arguments[name]
+        elif name not in self._given:
+            self._facts.required[self._path, name] = node.origin
 
     def _given_value(self, node: Node) -> str:
         """The argument for an included file. roslaunch accepts a default as well as a value."""
