@@ -145,3 +145,38 @@ def test_other_values_of_an_argument_are_not_taken_for_a_file_that_is_not_expand
         "arm_small.urdf.xacro": False,
         "arm_large.urdf.xacro": False,
     }
+
+
+RAW = '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-file {} -urdf -model bot"/>'
+SPAWNER = """
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory("bot"), "urdf", "bot.urdf.xacro")
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": Command(["xacro ", file])}]),
+        Node(package="gazebo_ros", executable="spawn_entity.py",
+             arguments=["-entity", "bot", "-file", file]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "line"), [(RAW.format(FILE), 2), (XACRO + "\n" + RAW.format(FILE), 3), (SPAWNER, 7)]
+)
+def test_a_spawner_that_reads_a_xacro_is_reported(bot: Write, text: str, line: int) -> None:
+    """Also if the launch file publishes the expanded description."""
+    path = bot(MASS + BODY, text)
+    (found,) = coded(check(path).findings, DESCRIPTION_NOT_EXPANDED)
+    assert found.origin is not None
+    assert found.origin.line == line
+    launch = next((path.parent.parent / "launch").iterdir())
+    assert coded(read_launch(launch, {}).diagnostics, DESCRIPTION_NOT_EXPANDED)
+    assert [each.code for each in try_robot(path, standing=1.0).faults] == [
+        DESCRIPTION_NOT_EXPANDED
+    ]
+    assert not coded(check(bot(MASS + BODY, XACRO + SPAWN)).findings, DESCRIPTION_NOT_EXPANDED)
+
+
+def test_a_spawner_may_read_a_file_without_expressions(bot: Write) -> None:
+    path = bot(BODY.replace("${mass}", "1"), RAW.format(FILE))
+    assert not coded(check(path).findings, DESCRIPTION_NOT_EXPANDED)

@@ -33,6 +33,8 @@ class LaunchUse:
     """Arguments of the xacro whose values are known."""
     plain: Origin | None = None
     """Where it passes the text of the description without expanding it; None if it does not."""
+    raw: bool = False
+    """Whether this text is that of the spawned model: the spawner reads the file."""
     unknown: int = 0
     """Number of arguments whose values are unknown."""
     controllers: tuple[Path, ...] = ()

@@ -153,6 +153,7 @@ class Classes:
                 if isinstance(each, list) and len(each) == 2
             },
             values=values,
+            origin=Origin(file=str(self.path), line=self.line),
         )
         parameters = words.get("parameters")
         for each in parameters if isinstance(parameters, list) else []:

@@ -100,6 +100,7 @@ def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]
         other.plain = {
             place: other.plain[number] for place, number in enumerate(new) if number in other.plain
         }
+        other.raw = {place for place, number in enumerate(new) if number in other.raw}
         other.descriptions = [other.descriptions[number] for number in new]
         if new:
             yield from uses_of(path, other, given.values())
@@ -171,6 +172,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 description=description,
                 arguments=known,
                 plain=facts.plain.get(number),
+                raw=number in facts.raw,
                 unknown=len(arguments) - len(known),
                 controllers=tuple(dict.fromkeys(path for _, path in facts.yamls)),
                 spawned=spawned,

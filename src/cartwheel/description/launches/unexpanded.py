@@ -47,22 +47,29 @@ def unexpanded(description: Path, launches: Sequence[LaunchUse]) -> Iterator[Dia
         for each in launches
         if each.simulated and each.description is not None and each.description.resolve() == path
     ]
-    if all(each.plain is not None for each in own):
-        for use in own[:1]:
+    raw = {each.file: each for each in own if each.raw}
+    # What the launch file publishes may be expanded, although what it spawns is not.
+    left = [raw.get(each.file, each) for each in own]
+    if all(each.plain is not None for each in left):
+        for use in left[:1]:
             yield from not_expanded(use)
 
 
 def not_expanded(use: LaunchUse) -> Iterator[Diagnostic]:
     """The diagnostic for a launch file that passes a xacro as it is."""
     if use.plain is not None and use.description is not None and needs_expansion(use.description):
-        name = use.description.name
+        name, what = use.description.name, "robot_description is"
         command = f"command=\"xacro '$(find PACKAGE)/…/{name}'\""
         if use.plain.file.endswith(".py"):
             command = 'Command(["xacro ", file])'
+        hint = f"Run xacro, for example with {command}."
+        if use.raw:
+            what = "the spawner passes to Gazebo"
+            hint += " Publish the result as robot_description, and spawn this instead of the file."
         yield DESCRIPTION_NOT_EXPANDED.diagnostic(
-            f'robot_description is the text of "{name}", which xacro does not expand, so Gazebo '
+            f'{what} the text of "{name}", which xacro does not expand, so Gazebo '
             "finds no links of its macros and included files, and no values of its expressions",
             origin=use.plain,
             values={"description": str(use.description)},
-            hint=f"Run xacro, for example with {command}.",
+            hint=hint,
         )

@@ -72,6 +72,8 @@ class Facts:
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
     plain: dict[int, Origin] = field(default_factory=dict)
     """Where those are stated whose text is not expanded, by their numbers."""
+    raw: set[int] = field(default_factory=set)
+    """The numbers of those that a spawner reads from their files."""
     absent: dict[str, None] = field(default_factory=dict)
     """Files and packages that are stated, but were not found, in their order."""
     published: dict[str, int] = field(default_factory=dict)
@@ -282,6 +284,7 @@ class Facts:
         described: int | None = None,
         remappings: Mapping[str, str] = MappingProxyType({}),
         values: Mapping[str, str] = MappingProxyType({}),
+        origin: Origin | None = None,
     ) -> None:
         """Adds what a node starts: models, controllers or a bridge.
 
@@ -293,6 +296,7 @@ class Facts:
             described: The number of the description whose text is one of its arguments.
             remappings: New names of its topics, by their old names.
             values: Its parameters, by name.
+            origin: Where it is stated; None if only the file is known.
         """
         if package in _GAZEBO:
             if executable == "create":
@@ -303,7 +307,12 @@ class Facts:
             if executable in MODEL_SPAWNERS:
                 spawn = spawn_of(executable, words, space)
                 if spawn.file is not None:
+                    first = len(self.descriptions)
                     described = self.add(spawn.file, {})
+                    # The spawner passes the text of the file to Gazebo.
+                    numbers = range(first, len(self.descriptions))
+                    self.plain |= dict.fromkeys(numbers, origin or Origin(file=str(self.file)))
+                    self.raw |= {*numbers}
                 elif spawn.model:
                     file = variants.model_in(self.home, spawn.model)
                     described = ABSENT if file is None else self.add(file, {})

@@ -114,6 +114,7 @@ class _Reader:
                     for child in node.children
                     if child.tag == "param" and "value" in child.attributes and self._holds(child)
                 },
+                origin=node.origin,
             )
             if kind == "type" and package == "controller_manager":
                 facts.seek(split(self._value(node, "args")), self._space(node))
