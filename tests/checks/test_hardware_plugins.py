@@ -1,6 +1,8 @@
 """Hardware of ``<ros2_control>`` for Gazebo, and the plugins that run it."""
 
 import pytest
+from tests.corpus.carts import cart
+from tests.corpus.carts import plugin as drive
 from tests.dialects.ros_control.arms import (
     ROS1,
     beam,
@@ -80,6 +82,54 @@ def test_transmissions_need_the_plugin_that_runs_controllers(
     ]
     assert found == [("controller", "file")] * reported
     assert not reported or verdict.outcome == "file"
+
+
+DRIVE = drive()
+ARM_YAML = """arm_controller:
+  type: effort_controllers/JointEffortController
+  joint: {joint}
+"""
+
+
+@pytest.mark.parametrize("version", [1, 2])
+@pytest.mark.parametrize(
+    ("plugin", "joint", "reported"),
+    [("", "beam_joint", True), (DRIVE, "beam_joint", True), (DRIVE, "left_joint", False)],
+)
+def test_controllers_need_a_manager_beside_other_plugins(
+    tmp_path, version, plugin, joint, reported
+):
+    """Also if the robot has no transmissions."""
+    kind = "ament_cmake" if version == 2 else "catkin"
+    (tmp_path / "package.xml").write_text(
+        f"<package><name>arm</name><buildtool_depend>{kind}</buildtool_depend></package>"
+    )
+    (tmp_path / "arm.yaml").write_text(ARM_YAML.format(joint=joint))
+    arm_on_cart = beam("beam", "base") if plugin else beam("beam", "world")
+    (tmp_path / "arm.urdf").write_text(
+        f'<robot name="arm"><link name="world"/>{arm_on_cart}</robot>'
+        if not plugin
+        else f'<robot name="arm">{cart()}{arm_on_cart}{plugin}</robot>'
+    )
+    (tmp_path / "arm.launch").write_text(
+        f'<launch><param name="robot_description" textfile="$(find arm)/arm.urdf"/>{SPAWN}'
+        '<rosparam file="$(find arm)/arm.yaml" command="load"/>'
+        '<node name="c" pkg="controller_manager" type="spawner" args="arm_controller"/></launch>'
+    )
+    found = [
+        each
+        for each in cartwheel.check(tmp_path / "arm.urdf").findings
+        if each.code is HARDWARE_WITHOUT_PLUGIN
+    ]
+    faults = [
+        (each.test, each.source)
+        for each in try_robot(tmp_path / "arm.urdf", standing=1.0).faults
+        if each.code is HARDWARE_WITHOUT_PLUGIN
+    ]
+    assert [each.values["joints"] for each in found] == [("beam_joint",)] * reported
+    assert faults == [("controller", "file")] * reported
+    wanted = "gz_ros2_control" if version == 2 else "libgazebo_ros_control.so"
+    assert all(wanted in str(each.hint) for each in found)
 
 
 MOCK = "mock_components/GenericSystem"

@@ -250,7 +250,7 @@ CONTROLLERS_NOT_FOUND = Code(
     "CW481",
     "controllers-not-found",
     "warning",
-    "no file contains controllers for a robot with a controller manager, or nothing starts them",
+    "no file contains controllers for a controller manager, or nothing starts them",
 )
 PORT_USED_TWICE = Code(
     "CW482",

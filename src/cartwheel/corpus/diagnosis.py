@@ -34,8 +34,8 @@ from cartwheel.corpus.missing_movers import (
     is_unmanaged,
     missing_movers,
     stopped_managers,
+    unmanaged_controllers,
     unmanaged_hardware,
-    unmanaged_transmissions,
 )
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.package_folders import package_above
@@ -150,9 +150,8 @@ def _faults(
         # Which of its controllers would not start does not matter.
         missing = {name: each for name, each in missing.items() if each.test != "controller"}
     missing |= stopped_ones | unmanaged
-    missing |= {
-        each.subject: each for each in unmanaged_transmissions(verdict, description, findings)
-    }
+    spawned = verdict.launch is not None and bool(verdict.launch.spawned)
+    missing |= {each.subject: each for each in unmanaged_controllers(findings) if spawned}
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights

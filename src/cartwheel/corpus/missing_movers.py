@@ -73,20 +73,13 @@ def _stands_still(description: RobotDescription) -> bool:
     return bool(lost) and all(id(each) in lost for each in commanded)
 
 
-def unmanaged_transmissions(
-    verdict: Verdict,
-    description: RobotDescription,
-    findings: Callable[[], Sequence[Diagnostic]],
-) -> Iterator[Fault]:
-    """Transmissions of a robot that a launch file starts in Gazebo with controllers, although no
-    plugin runs them.
+def unmanaged_controllers(findings: Callable[[], Sequence[Diagnostic]]) -> Iterator[Fault]:
+    """Controllers that a launch file starts for a robot in Gazebo, although no plugin runs them.
+
+    Plugins may drive other joints of the robot.
     """
-    use = verdict.launch
-    if verdict.movers or use is None or not use.spawned or not description.transmissions:
-        return
     for each in findings():
-        known = each.values.get("hardware") == "transmission"
-        if known and each.code is devices.HARDWARE_WITHOUT_PLUGIN:
+        if each.code is devices.HARDWARE_WITHOUT_PLUGIN and each.values.get("spawned"):
             yield Fault(test="controller", subject=str(each.values["name"]), reason=each)
 
 

@@ -160,7 +160,7 @@ def _others(facts: Facts) -> list[dict[str, str]]:
 def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[LaunchUse]:
     """What a launch file starts; `words` are the values of arguments without their defaults."""
     described: list[tuple[Path | None, dict[str, str]]] = [*facts.descriptions]
-    if not described and facts.yamls:
+    if not described and (facts.yamls or facts.spawned or facts.loaded or facts.unsure):
         described.append((None, {}))
     found = []
     spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))

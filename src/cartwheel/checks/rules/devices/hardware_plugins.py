@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import replace
 from pathlib import Path, PurePath
 
-from cartwheel.checks import nodes
-from cartwheel.checks.controller_claims import managers
+from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks.controller_claims import claims, managers
+from cartwheel.checks.controller_files import ControlFile
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.undriven_joints import drives_joints
@@ -16,9 +17,11 @@ from cartwheel.codes import devices as devices_codes
 from cartwheel.codes import files
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.ros_version import ros_version
+from cartwheel.description.launches import LaunchUse
 from cartwheel.description.model import Element
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
+from cartwheel.dialects.ros_control.files import name_and_file
 from cartwheel.dialects.ros_control.interfaces import (
     MANAGERS,
     SYSTEMS,
@@ -28,10 +31,13 @@ from cartwheel.dialects.ros_control.interfaces import (
     package_system,
     unknown_hardware,
 )
+from cartwheel.dialects.tag_roles import DRIVEN_ROLES
 from cartwheel.errors import Diagnostic, Origin
 
 _STATES = "joint_state"
 """Part of the names of controllers that only publish."""
+_SHOWN = 3
+"""Maximum number of joints that a message lists."""
 _ABSENT = (files.INCLUDE_ABSENT, files.MACRO_ABSENT)
 """Parts that may contain the plugin."""
 CONDITIONS = ("xacro:if", "xacro:unless")
@@ -70,22 +76,29 @@ def hardware_unknown(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
-    """Transmissions, or hardware of ``<ros2_control>`` that is not for Gazebo, of a robot that a
-    launch file starts in Gazebo with controllers, although no plugin runs them.
+    """Controllers that a launch file starts for a robot in Gazebo, although no plugin runs them.
+
+    Hardware of ``<ros2_control>`` for Gazebo is left out, which is reported otherwise.
     """
     description, use = robot.description, subject.launch
     if (
         use is None
         or not use.simulated
         or all(_STATES in name for name in use.spawned)
-        or any(map(drives_joints, description.plugins))
+        or any("control" in short_name(tag.filename) for tag in description.plugins)
+        or managers(robot, ros2=True)
+        or managers(robot, ros2=False)
         or any(each.code in _ABSENT for each in description.diagnostics)
     ):
+        return
+    lost = _lost_joints(robot, use)
+    if not lost and any(map(drives_joints, description.plugins)):
         return
     first = next(name for name in use.spawned if _STATES not in name)
     names = ", ".join(f'"{name}"' for name in use.spawned)
     starts = f'"{use.file.name}" starts the controllers {names}, but the description'
     movable = {each.name for each in description.joints if each.type != "fixed"}
+    values = {"name": first, "spawned": True}
     if description.ros2_control:
         # An argument that is unknown, or that the user states, may select a plugin.
         systems = _listing(description.ros2_control, movable) if is_started(subject) else []
@@ -97,21 +110,60 @@ def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
             f"{starts} does not contain a plugin that runs controllers in Gazebo, and its hardware "
             f'"{hardware}" is not for Gazebo, so no controller moves its joints there',
             origin=(systems[0].find("hardware/plugin") or systems[0]).origin,
-            values={"hardware": hardware, "plugin": "", "name": first},
+            values={"hardware": hardware, "plugin": "", **values},
             hint=f"In Gazebo, use {' or '.join(usable)}.",
             mark=hardware,
         )
         return
     listed = _listing(description.transmissions, movable)
-    if listed and ros_version(Path(description.origin.file)) != 2:
+    is_ros2 = ros_version(Path(description.origin.file)) == 2
+    if listed and not is_ros2:
         file = f"lib{ROS_CONTROL}.so"
         yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
             f'{starts} does not contain the plugin "{file}", which runs them, so no controller '
             "starts",
             origin=listed[0].origin,
-            values={"hardware": "transmission", "plugin": file, "name": first},
+            values={"hardware": "transmission", "plugin": file, **values},
             hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
         )
+    elif lost and is_started(subject):
+        tag, files = "<transmission>", [f"lib{ROS_CONTROL}.so"]
+        if is_ros2:
+            tag, files = "<ros2_control>", list(MANAGERS.values())
+        usable = (f'<plugin filename="{file}" name="…">' for file in files)
+        yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
+            f"{starts} contains neither a plugin that runs them nor a {tag}, so no controller "
+            f"starts and nothing moves {_named(lost)}",
+            origin=robot.joints[lost[0]].origin,
+            values={"hardware": "", "plugin": files[0], "joints": tuple(lost), **values},
+            hint=f"Add a {tag} with the joints, and {' or '.join(usable)} in a <gazebo>.",
+        )
+
+
+def _lost_joints(robot: Robot, use: LaunchUse) -> list[str]:
+    """The joints of the controllers that a launch file starts, except those that plugins drive."""
+    driven = {
+        name.strip()
+        for tag in robot.description.plugins
+        for role in plugin_tags.roles(tag.filename)
+        if role.role in DRIVEN_ROLES
+        for name in role.joints(tag.element)
+    }
+    files = (name_and_file(path) for path in use.controllers)
+    wanted = (
+        claim.joint
+        for name, path in files
+        for each in ControlFile(path=path, named=True, robot=robot.description, name=name).written
+        if each.name.rpartition("/")[2] in {one.rpartition("/")[2] for one in use.spawned}
+        for claim in claims(each)
+    )
+    return [name for name in dict.fromkeys(wanted) if name in robot.joints and name not in driven]
+
+
+def _named(joints: Sequence[str]) -> str:
+    """Joints in a message."""
+    more = f" and {len(joints) - _SHOWN} more" if len(joints) > _SHOWN else ""
+    return ", ".join(f'"{name}"' for name in joints[:_SHOWN]) + more
 
 
 def _listing(elements: Iterable[Element], joints: Set[str]) -> list[Element]:
