@@ -22,12 +22,12 @@ from cartwheel.description.launches.controllers import (
     by_command,
     by_service,
     by_spawner,
+    shell_commands,
 )
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.gazebos import Gazebos
 from cartwheel.description.launches.launch_use import Unfound
 from cartwheel.description.launches.python_variables import Place, Uncertain
-from cartwheel.description.launches.shell_commands import shell_commands
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
     Spawn,

@@ -32,7 +32,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     unknown_hardware,
 )
 from cartwheel.dialects.tag_roles import DRIVEN_ROLES
-from cartwheel.errors import Diagnostic, Origin
+from cartwheel.errors import Diagnostic, Origin, Value
 
 _STATES = "joint_state"
 """Part of the names of controllers that only publish."""
@@ -98,7 +98,7 @@ def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
     names = ", ".join(f'"{name}"' for name in use.spawned)
     starts = f'"{use.file.name}" starts the controllers {names}, but the description'
     movable = {each.name for each in description.joints if each.type != "fixed"}
-    values = {"name": first, "spawned": True}
+    values: dict[str, Value] = {"name": first, "spawned": True}
     if description.ros2_control:
         # An argument that is unknown, or that the user states, may select a plugin.
         systems = _listing(description.ros2_control, movable) if is_started(subject) else []
