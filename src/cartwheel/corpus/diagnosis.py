@@ -304,6 +304,9 @@ def _measured(
         ]
         fallen = cause_of_fall(verdict.stand, description, everything, idle, wheel)
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
+    toppled = next((each for each in verdict.observed if _topples(each)), None)
+    if toppled is not None:
+        yield Fault(test="stand", subject="tips", reason=toppled)
     for topic in verdict.silent:
         reason = coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
@@ -365,7 +368,7 @@ def _measured(
             # were tested again above it.
             names = reach.joint, children.get(reach.joint, "")
             found = explaining("reach", reach.joint)
-            reason = _of_joint(found, *names) or (None if sank else fallen)
+            reason = _of_joint(found, *names) or (None if sank else fallen or toppled)
             yield Fault(test="reach", subject=reach.joint, reason=reason)
     for spin in verdict.spins:
         if not spin.follows:
@@ -385,6 +388,11 @@ def _unpublished(
     sensors = any(link.sensors for link in description.links)
     if sensors and (verdict.model or verdict.launch is not None):
         yield from (each for each in findings() if each.code is devices.SENSOR_SYSTEM_MISSING)
+
+
+def _topples(each: Diagnostic) -> bool:
+    """Whether it is about a robot that fell when its joints moved; see `resting.toppled`."""
+    return each.code is robot.UNBALANCED and "joints" in each.values
 
 
 def _has_slip(description: RobotDescription) -> bool:
@@ -416,6 +424,7 @@ def _explaining(
         each
         for each in found
         if (hindered or each.code is not running.JOINT_DRIVEN_TWICE)
+        and not (test in BASES and _topples(each))
         and (
             test not in BASES
             or each.code not in (running.PLUGIN_LEFT_OUT, robot.DRIVE_JOINT_UNKNOWN)

@@ -57,7 +57,9 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
         simulated=simulated,
         wall=time.perf_counter() - begun,
         sunk=start.z - after.z,
-        tilt=_between(rotate(start.orientation, (0, 0, 1)), rotate(after.orientation, (0, 0, 1))),
+        tilt=angle_between(
+            rotate(start.orientation, (0, 0, 1)), rotate(after.orientation, (0, 0, 1))
+        ),
         speed=math.dist(before.position, after.position),
         turn=_turned(before, after),
         size=Robot(description, None).size,
@@ -293,6 +295,6 @@ def _turned(one: Pose, other: Pose) -> float:
     return 2 * math.acos(min(1.0, w))
 
 
-def _between(one: tuple[float, float, float], other: tuple[float, float, float]) -> float:
+def angle_between(one: tuple[float, float, float], other: tuple[float, float, float]) -> float:
     cosine = sum(a * b for a, b in zip(one, other, strict=True))
     return math.acos(max(-1.0, min(1.0, cosine)))

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from cartwheel.api import Model, World
 from cartwheel.checks.resting import starting_positions
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import ROUND, wheel_axis, wheel_joints, wheel_links, wheel_widths
+from cartwheel.checks.wheels import (
+    ROUND,
+    lowest,
+    wheel_axis,
+    wheel_joints,
+    wheel_links,
+    wheel_widths,
+)
 from cartwheel.codes import devices
 from cartwheel.codes import robot as robot_codes
 from cartwheel.corpus.loads import held_by
-from cartwheel.corpus.motion import commanded_speeds
-from cartwheel.corpus.verdict import Drive
+from cartwheel.corpus.motion import angle_between, commanded_speeds
+from cartwheel.corpus.verdict import TILTED, Drive
 from cartwheel.description.model import Joint
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.errors import Diagnostic, Origin
+from cartwheel.geometry import Pose, rotate
 
 _CARRIES = 0.1
 """Smallest part of the weight that is reported."""
@@ -34,6 +43,9 @@ _ALL = 0.95
 _LEVEL = 0.9
 """Largest vertical component of the axis of a joint that lifts."""
 _GRAVITY = 9.8
+_UP = (0.0, 0.0, 1.0)
+_FLAT = 0.005
+"""Largest height of a part on which a robot stands, relative to the robot's size."""
 _LOOKING, _INSTANTS = 0.1, 10
 """Time in which loads are averaged, s, and the number of times at which they are taken."""
 
@@ -104,6 +116,46 @@ def drives_apart(robot: Robot, drives: Sequence[Drive]) -> Iterator[Diagnostic]:
         values={"topics": tuple(topics)},
         origin=robot.description.origin,
         hint="Command all drives at the same time, for example on the same topic.",
+    )
+
+
+def toppled(
+    model: Model, robot: Robot, commanded: Iterable[str], upright: Pose
+) -> Iterator[Diagnostic]:
+    """The robot, if it stands on its base, but fell when the joints on the base moved.
+
+    Args:
+        model: The robot in the world, after the motion.
+        robot: Its description.
+        commanded: The joints that were moved.
+        upright: The pose of its root link before.
+    """
+    heights = {name: low for name in robot.links if (low := lowest(robot, name)) is not None}
+    ground = min(heights.values(), default=0.0) + _FLAT * robot.size
+    standing = [name for name, height in heights.items() if height <= ground]
+    moved = set(commanded)
+    if not robot.is_placed or robot.uncovered or moved & robot.carrying(standing):
+        # Those are legs, or may be.
+        return
+    tilt = angle_between(*(rotate(pose.orientation, _UP) for pose in (upright, model.pose)))
+    if tilt <= TILTED:
+        return
+    wheels = {name for joint in wheel_joints(robot) for name in wheel_links(robot, joint)}
+    root = robot.rigid_root(standing[0])
+    hint = "Make the base heavier or its track wider, or the arm lighter."
+    why = ""
+    if not wheels:
+        why = ", because nothing fixes it to the world"
+        hint = (
+            f'If it is mounted on something, add <link name="world"/> and a fixed joint from '
+            f'"world" to "{root}".'
+        )
+    yield robot_codes.UNBALANCED.diagnostic(
+        message=f"the robot tilts by {math.degrees(tilt):.2g}° when its joints move{why}",
+        severity="warning",
+        values={"tilt": tilt, "joints": tuple(sorted(moved))},
+        origin=robot.description.origin,
+        hint=hint,
     )
 
 

@@ -30,6 +30,7 @@ from cartwheel.corpus.resting import (
     drives_apart,
     gave_way,
     sagging,
+    toppled,
 )
 from cartwheel.corpus.rivals import hindered
 from cartwheel.corpus.verdict import Drive, Verdict
@@ -341,7 +342,13 @@ def _joints_moved(
 ) -> Iterator[Verdict]:
     started = controllers_of(world).started
     gains = weak_gains(robot, started)
-    reached = [*motion.reaches(world, model, robot, started, gains), *posed(world, model, robot)]
+    upright = model.pose
+    reached = [*motion.reaches(world, model, robot, started, gains)]
+    fell: list[Diagnostic] = []
+    if verdict.stand is not None and verdict.stand.state == "yes":
+        names = [each.joint for each in reached]
+        fell += toppled(model, Robot(robot, None), names, upright)
+    reached += posed(world, model, robot)
     verdict = replace(verdict, reaches=tuple(reached))
     late = {each.joint for each in reached if not each.arrived}
     held |= late & blocked(world, model, Robot(robot, None)) if late else late
@@ -350,7 +357,8 @@ def _joints_moved(
         *sagged(robot, started, gains, reached),
         *too_weak(robot, started, gains, sorted(late)),
     )
-    verdict = replace(verdict, observed=tuple(dict.fromkeys((*verdict.observed, *springs))))
+    seen = dict.fromkeys((*verdict.observed, *fell, *springs))
+    verdict = replace(verdict, observed=tuple(seen))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
 

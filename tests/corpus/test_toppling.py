@@ -1,0 +1,52 @@
+"""Robots that fall over when their joints move."""
+
+import pytest
+
+from cartwheel.codes.robot import UNBALANCED
+from cartwheel.corpus import try_robot
+
+LINK = (
+    '<link name="{name}"><inertial><origin xyz="0 0 {z}"/><mass value="{mass}"/>'
+    '<inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial><collision><origin xyz="0 0 {z}"/>'
+    '<geometry><box size="{size}"/></geometry></collision></link>'
+)
+MOVED = (
+    '<joint name="{name}_joint" type="revolute"><parent link="base"/><child link="{name}"/>'
+    '<origin xyz="{at}"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="500" velocity="2"/>'
+    '<dynamics damping="1"/></joint>'
+)
+MOTOR = (
+    '<gazebo><plugin name="m" filename="gz-sim-joint-position-controller-system">'
+    "<joint_name>{name}_joint</joint_name><p_gain>2000</p_gain><d_gain>100</d_gain></plugin></gazebo>"
+)
+ARM = LINK.format(name="arm", z=0.6, mass=5, size="0.05 0.05 0.2")
+WORLD = (
+    '<link name="world"/><joint name="mount" type="fixed"><parent link="world"/>'
+    '<child link="base"/></joint>'
+)
+
+
+def tried(tmp_path, *parts):
+    path = tmp_path / "robot.urdf"
+    path.write_text(f'<robot name="robot">{"".join(parts)}</robot>')
+    return try_robot(path, standing=2.0)
+
+
+@pytest.mark.parametrize(("wide", "more", "falls"), [(0.1, "", 1), (0.1, WORLD, 0), (0.6, "", 0)])
+def test_an_arm_that_nothing_fixes_to_the_world_may_tip_over(tmp_path, wide, more, falls):
+    base = LINK.format(name="base", z=0.05, mass=2, size=f"{wide} 0.3 0.1")
+    joint = MOVED.format(name="arm", at="0 0 0.1")
+    verdict = tried(tmp_path, base, ARM, joint, MOTOR.format(name="arm"), more)
+    assert verdict.reaches
+    assert {(each.test, each.code, each.source) for each in verdict.faults} == (
+        {("stand", UNBALANCED, "file")} if falls else set()
+    )
+
+
+def test_a_robot_may_fall_when_its_legs_move(tmp_path):
+    base = LINK.format(name="base", z=0.6, mass=5, size="0.3 0.3 0.1")
+    leg = LINK.format(name="leg", z=-0.25, mass=1, size="0.1 0.3 0.5")
+    joint = MOVED.format(name="leg", at="0 0 0.55")
+    verdict = tried(tmp_path, base, leg, joint, MOTOR.format(name="leg"))
+    assert verdict.reaches
+    assert not verdict.faults
