@@ -7,6 +7,7 @@ from cartwheel.codes.robot import (
     CASTER_FRICTION,
     SKID_STEERING,
     STEERING_REVERSED,
+    WHEEL_DIAMETER_MISMATCH,
     WHEEL_SEPARATION_MISMATCH,
     WHEELS_SWAPPED,
 )
@@ -38,6 +39,25 @@ def test_a_wrong_separation_and_a_caster_that_is_dragged(tmp_path, separation, r
     assert (fault.test, fault.code, fault.source) == ("turn", reason, "file")
     (drive,) = verdict.drives
     assert 0.6 < (1 + drive.error_turn) / (separation / 0.2) < 0.9
+
+
+@pytest.mark.parametrize(
+    ("separation", "radius", "told"),
+    [
+        (0.2, 0.05, {("turn", WHEELS_SWAPPED)}),
+        (0.3, 0.05, {("turn", WHEELS_SWAPPED), ("turn", WHEEL_SEPARATION_MISMATCH)}),
+        # The radius is the reason of the speed.
+        (0.2, 0.04, {("turn", WHEELS_SWAPPED), ("drive", WHEEL_DIAMETER_MISMATCH)}),
+    ],
+)
+def test_wrong_sizes_are_told_beside_what_explains_more(tmp_path, separation, radius, told):
+    drive = plugin(separation).replace("eter>0.1<", f"eter>{2 * radius}<")
+    drive = drive.replace("leftJoint", "x").replace("rightJoint", "leftJoint")
+    verdict = try_robot(written(tmp_path, cart(), drive.replace("<x", "<rightJoint").replace(
+        "</x", "</rightJoint")), standing=1.0)  # fmt: skip
+    assert len(verdict.faults) == len(told)
+    assert {(each.test, each.code) for each in verdict.faults} == told
+    assert verdict.outcome == "file"
 
 
 SEPARATION = WHEEL_SEPARATION_MISMATCH.diagnostic("", values={"stated": 0.4, "measured": 0.2})

@@ -17,6 +17,7 @@ from cartwheel.corpus.drive_causes import (
     flywheel,
     ignored_torque,
     is_free,
+    wrong_sizes,
 )
 from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
 from cartwheel.corpus.fall_causes import (
@@ -331,12 +332,16 @@ def _measured(
             # Gazebo does not move it at all, which is a fault of its own.
             continue
         forward: Diagnostic | None = None
+        explained: list[Diagnostic] = []
+        wrong: list[Diagnostic] = []
         # A robot that fell cannot drive, nor one that its own wheels throw over.
         unsteady = wheel or fallen or flywheel((*said, *findings()), description)
         if not drive.follows:
             found = explaining("drive", drive.topic)
             forward = cause_of_drive(found, 1.0 + drive.error)
             reason = forward or unsteady or ignored_torque(found, 1.0 + drive.error)
+            wrong += wrong_sizes(found, 1.0 + drive.error)
+            explained += [reason] if reason is not None else []
             yield Fault(test="drive", subject=drive.topic, reason=reason)
         if not drive.turns:
             found = explaining("turn", drive.topic)
@@ -352,6 +357,8 @@ def _measured(
                 # It also stands well enough to drive.
                 unsteady = wheel
             reason = reason or unsteady or ignored_torque(found, 1.0 + drive.error_turn)
+            wrong += wrong_sizes(found, 1.0 + drive.error_turn, turning=True)
+            explained += [reason] if reason is not None else []
             sure = reason is None or not (reason.code in _BY_SLIDING and _slipping(found))
             yield Fault(test="turn", subject=drive.topic, reason=reason, sure=sure)
         elif _has_slip(description) and drive.commanded_turn:
@@ -362,6 +369,12 @@ def _measured(
             found = explaining("sideways", drive.topic)
             reason = cause_of_drive(found, 1.0 + drive.error_sideways, sideways=True)
             yield Fault(test="sideways", subject=drive.topic, reason=reason or unsteady)
+        # Whatever else is wrong, these sizes are, too.
+        told = {each.code for each in explained}
+        for code, each in {each.code: each for each in reversed(wrong)}.items():
+            if code not in told:
+                test = "drive" if code is robot.WHEEL_DIAMETER_MISMATCH else "turn"
+                yield Fault(test=test, subject=drive.topic, reason=each)
     for reach in verdict.reaches:
         if not reach.arrived and is_started(reach.controller, verdict):
             # A robot that fell may lie on its joints. If it only sank, those that the ground holds

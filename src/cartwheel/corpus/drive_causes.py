@@ -84,6 +84,19 @@ def cause_of_drive(
     return _as_measured(cause, ratio)
 
 
+def wrong_sizes(
+    found: Sequence[Diagnostic], ratio: float, *, turning: bool = False
+) -> list[Diagnostic]:
+    """The wrong sizes of wheels or, for a turn, of the distance between them.
+
+    They do not matter to a base that hardly moves. `ratio` is its velocity relative to the command.
+    """
+    if abs(ratio) < _STUCK:
+        return []
+    code = robot.WHEEL_SEPARATION_MISMATCH if turning else robot.WHEEL_DIAMETER_MISMATCH
+    return [each for each in found if each.code is code and each.severity != "info"]
+
+
 def explains_turn(forward: Diagnostic | None, factor: float, ratio: float) -> bool:
     """Whether the reason of a wrong speed, if it is a wheel size, also explains the turn rate.
 
