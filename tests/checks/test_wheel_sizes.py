@@ -807,3 +807,14 @@ def test_only_multipliers_that_a_controller_has_are_advised(tmp_path, kind, para
     (controller,) = ControlFile(path=path, named=True).controllers
     apart = [each for each in _of_controller(robot, controller, ()) if each.measure == "apart"]
     assert [each.multiplier for each in apart] == [multiplier]
+
+
+def test_a_wheel_rolls_on_its_collision_whatever_it_looks_like(reported):
+    """Its visual mesh is missing."""
+    name = "libgazebo_ros_diff_drive.so"
+    text = car(plugin(name, **{**DRIVES[name], "wheel_diameter": RADIUS}))
+    mesh = '<visual><geometry><mesh filename="package://nowhere/wheel.stl"/></geometry></visual>'
+    unseen = text.replace(WHEEL, mesh + WHEEL)
+    assert [each.code for each in reported(unseen)] == [WHEEL_DIAMETER_MISMATCH]
+    # Nothing shows its size.
+    assert not reported(text.replace(WHEEL, mesh))

@@ -5,6 +5,7 @@ import re
 import pytest
 from tests.corpus.carts import cart, plugin, written
 
+from cartwheel.codes.devices import PLUGIN_UNKNOWN
 from cartwheel.codes.robot import INERTIA_MISSING, LIMIT_MISSING
 from cartwheel.corpus import try_robot
 
@@ -62,6 +63,20 @@ def test_gazebo_drops_a_driven_joint_with_the_link_that_carries_it(tmp_path, ser
     assert verdict.outcome == "file"
     assert verdict.should_move
     assert not verdict.moves
+
+
+UNKNOWN = (
+    '<gazebo><plugin name="x" filename="libmy_own_drive.so"><joint>{name}_joint</joint></plugin>'
+    "</gazebo>"
+)
+
+
+@pytest.mark.parametrize(("mass", "reason"), [("", INERTIA_MISSING), (MASS, PLUGIN_UNKNOWN)])
+def test_no_plugin_moves_a_joint_that_gazebo_drops(tmp_path, mass, reason):
+    """That the plugin is not supported does not matter then."""
+    path = arm(tmp_path, upper=mass, servo="")
+    path.write_text(path.read_text().replace("</robot>", UNKNOWN.format(name="hand") + "</robot>"))
+    assert [each.code for each in try_robot(path, standing=1.0).faults] == [reason]
 
 
 def test_a_link_without_mass_that_nothing_drives_is_no_fault(tmp_path):

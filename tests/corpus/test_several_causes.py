@@ -8,6 +8,7 @@ from cartwheel.codes.robot import (
     SKID_STEERING,
     STEERING_REVERSED,
     WHEEL_DIAMETER_MISMATCH,
+    WHEEL_FRICTION_OBLIQUE,
     WHEEL_SEPARATION_MISMATCH,
     WHEELS_SWAPPED,
 )
@@ -114,3 +115,14 @@ def test_swapped_wheels_and_a_caster_that_is_dragged(tmp_path):
     verdict = try_robot(written(tmp_path, dragging(0.5), swapped), standing=1.0)
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("turn", WHEELS_SWAPPED, "file")
+
+
+OBLIQUE = WHEEL_FRICTION_OBLIQUE.diagnostic("")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "turning", "reason"),
+    [(0.7, False, OBLIQUE), (1.3, False, None), (1.3, True, OBLIQUE), (-1.3, False, OBLIQUE)],
+)
+def test_friction_makes_no_base_faster_straight_ahead(ratio, turning, reason):
+    assert cause_of_drive([OBLIQUE], ratio, turning=turning) is reason

@@ -20,6 +20,7 @@ from cartwheel.corpus.drive_causes import (
     wrong_sizes,
 )
 from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
+from cartwheel.corpus.dropped_joints import dropped_joints, moves_nothing
 from cartwheel.corpus.fall_causes import (
     LEFT_OUT,
     cause_of_fall,
@@ -40,7 +41,6 @@ from cartwheel.corpus.missing_movers import (
 )
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.package_folders import package_above
-from cartwheel.description.kinematics import carried
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Diagnostic
 
@@ -139,7 +139,8 @@ def _faults(
     missing = {
         fault.subject: fault
         for fault in reversed([*missing_movers(verdict, description, findings, held=held)])
-        if stopped is None or fault.reason is not stopped
+        if (stopped is None or fault.reason is not stopped)
+        and not (fault.code is devices.PLUGIN_UNKNOWN and moves_nothing(fault.reason, description))
     }
     unmanaged = dict(unmanaged_hardware(verdict, description, findings))
     if unmanaged:
@@ -176,7 +177,7 @@ def _load_faults(
     for reason in reasons:
         if reason is not None:
             yield Fault(test="load", reason=reason)
-    for joint, dropped in _dropped(verdict, description):
+    for joint, dropped in dropped_joints(verdict, description):
         yield Fault(test="load", subject=joint, reason=dropped)
     if stopped is not None:
         yield Fault(test="load", subject=str(stopped.values["file"]), reason=stopped)
@@ -206,25 +207,6 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
             if roots:
                 return each
     return None
-
-
-def _dropped(verdict: Verdict, description: RobotDescription) -> Iterator[tuple[str, Diagnostic]]:
-    """A driven joint that does not exist in Gazebo, because the link that it moves, or one that
-    carries it, has no mass.
-    """
-    if coded(description.diagnostics, LEFT_OUT) is not None:
-        # The missing part may contain the mass.
-        return
-    held = {joint.child for joint in description.joints}
-    for each in description.diagnostics:
-        links = each.values.get("links", ())
-        if each.code is not robot.INERTIA_MISSING or not isinstance(links, tuple):
-            continue
-        lost = carried(description.joints, {str(name) for name in links} & held)
-        for joint in description.joints:
-            if joint.name in verdict.driven and joint.child in lost:
-                yield joint.name, each
-                return
 
 
 def _refused(description: RobotDescription) -> Diagnostic | None:
@@ -373,8 +355,8 @@ def _measured(
         told = {each.code for each in explained}
         for code, each in {each.code: each for each in reversed(wrong)}.items():
             if code not in told:
-                test = "drive" if code is robot.WHEEL_DIAMETER_MISMATCH else "turn"
-                yield Fault(test=test, subject=drive.topic, reason=each)
+                about: Test = "drive" if code is robot.WHEEL_DIAMETER_MISMATCH else "turn"
+                yield Fault(test=about, subject=drive.topic, reason=each)
     for reach in verdict.reaches:
         if not reach.arrived and is_started(reach.controller, verdict):
             # A robot that fell may lie on its joints. If it only sank, those that the ground holds

@@ -56,6 +56,21 @@ _DRIVING = frozenset(
     }
 )
 """Mistakes that change a base's velocity by an unknown factor."""
+_NEVER_FASTER = frozenset(
+    {
+        robot.DRIVE_JOINT_UNKNOWN,
+        robot.DRIVE_JOINT_NOT_CONTINUOUS,
+        robot.WHEEL_FRICTIONLESS,
+        robot.WHEEL_FRICTION_OBLIQUE,
+        robot.WHEEL_WITHOUT_COLLISION,
+        robot.WHEELS_OFF_GROUND,
+        robot.BODY_ON_GROUND,
+        robot.DRIVES_APART,
+        robot.EFFORT_ZERO,
+        robot.DAMPING_TOO_HIGH,
+    }
+)
+"""Mistakes with which a base does not drive faster ahead than its wheels roll."""
 _SLOWING = frozenset({robot.SKID_STEERING, robot.CASTER_FRICTION})
 """Parts that slide in a turn."""
 _SIDEWAYS = _DRIVING | {running.WHEELS_WITHOUT_ROLLERS}
@@ -72,6 +87,8 @@ def cause_of_drive(
 ) -> Diagnostic | None:
     """The mistake that explains why a base moves at a multiple of the commanded velocity."""
     codes = _TURNING if turning else _SIDEWAYS if sideways else _DRIVING
+    if ratio > 1.0 + _TOO_FAST and not turning and not sideways:
+        codes -= _NEVER_FASTER
     cause = _cause(found, ratio, codes, turning=turning, arc=arc)
     if cause is None and turning:
         return _too_weak(found, ratio)

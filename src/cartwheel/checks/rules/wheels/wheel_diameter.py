@@ -21,6 +21,7 @@ from cartwheel.checks.wheels import (
     wheel_radius,
 )
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.model import Joint
 from cartwheel.errors import Code, Diagnostic
 
 _LIFTED = 0.2
@@ -119,7 +120,7 @@ def _sizes(one: Stated) -> _Sizes | None:
     radii = {
         name: radius
         for name in one.first
-        if (wheel := robot.joints[name]).child in robot.links and robot.whole(wheel.child)
+        if (wheel := robot.joints[name]).child in robot.links and _is_whole(robot, wheel)
         if (radius := wheel_radius(robot, wheel)) is not None and is_across(robot, wheel)
     }
     times = 1 if one.measure == "radius" else 2
@@ -129,6 +130,15 @@ def _sizes(one: Stated) -> _Sizes | None:
         if not any(_is_lifted(robot, name, other, radius) for other in radii)
     }
     return _Sizes(wheels=sizes, stated=one.used) if sizes else None
+
+
+def _is_whole(robot: Robot, wheel: Joint) -> bool:
+    """Whether no mesh is missing among the shapes that give the size of a wheel.
+
+    A wheel rolls on its collisions, whatever it looks like.
+    """
+    rolls = any(robot.collisions[name] for name in wheel_links(robot, wheel))
+    return robot.whole(wheel.child, looks=not rolls)
 
 
 def _is_lifted(robot: Robot, name: str, other: str, radius: float) -> bool:
