@@ -818,3 +818,30 @@ def test_a_wheel_rolls_on_its_collision_whatever_it_looks_like(reported):
     assert [each.code for each in reported(unseen)] == [WHEEL_DIAMETER_MISMATCH]
     # Nothing shows its size.
     assert not reported(text.replace(WHEEL, mesh))
+
+
+SDF_WHEEL = """<link name="{name}"><pose>0 {y} 0 -1.5707963 0 0</pose>{visual}
+  <collision name="c"><geometry><cylinder><radius>0.1</radius><length>0.02</length></cylinder></geometry>
+  </collision></link>
+  <joint name="{name}_joint" type="revolute"><parent>base</parent><child>{name}</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>"""
+MESH = "<mesh><uri>nowhere/wheel.stl</uri></mesh>"
+PAINT = "<material><script><uri>nowhere/a.material</uri><name>A</name></script></material>"
+
+
+@pytest.mark.parametrize(("shape", "paint"), [(MESH, ""), ("<box><size>1 1 1</size></box>", PAINT)])
+def test_a_wheel_in_sdf_rolls_on_its_collision_whatever_it_looks_like(reported, shape, paint):
+    visual = f'<visual name="v"><geometry>{shape}</geometry>{paint}</visual>'
+    wheels = "".join(
+        SDF_WHEEL.format(name=f"{side}_wheel", y=y, visual=visual)
+        for side, y in (("left", 0.15), ("right", -0.15))
+    )
+    drive = plugin(
+        "libgazebo_ros_diff_drive.so",
+        leftJoint="left_wheel_joint",
+        rightJoint="right_wheel_joint",
+        wheelSeparation=0.3,
+        wheelDiameter=0.1,
+    )
+    text = f'<sdf version="1.6"><model name="m"><link name="base"/>{wheels}{drive}</model></sdf>'
+    assert [each.code for each in reported(text)] == [WHEEL_DIAMETER_MISMATCH]

@@ -43,6 +43,8 @@ REPORTED = (
     PHYSICS_SETTING_IGNORED,
 )
 """Every code that a check can report, from the rules and from the description readers."""
+_MATERIALS = ("material", "texture")
+"""What readers leave out that changes no shape."""
 MAX_FAILURES = 30
 """Unreadable elements to remove before giving up: the rest of such a file is rarely useful."""
 
@@ -140,11 +142,14 @@ def _subject(
     elif read is not None:
         described = (read,)
     root = opened.root if opened.root.tag == "robot" else None
+    unseen: set[str] = set()
     if root is None:
-        cut |= _left_out(opened.root, read)
+        lost_shapes, unseen = _left_out(opened.root, read)
+        cut |= lost_shapes
     lost = displaced(opened.root, tree) if root is not None else set()
     robots = tuple(
-        Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
+        Robot(each, root, mended=mended | cut, cut=cut, unseen=unseen, displaced=lost)
+        for each in described
     )
     find = launches or LaunchSearch(opened.packages.package_path).of
     found: dict[Path, OwnLaunches] = {}
@@ -216,19 +221,26 @@ def _read(
                 mended |= mend(tree)
 
 
-def _left_out(root: Node, read: RobotDescription | WorldDescription | None) -> set[str]:
-    """SDF links with elements that the readers ignored."""
+def _left_out(
+    root: Node, read: RobotDescription | WorldDescription | None
+) -> tuple[set[str], set[str]]:
+    """SDF links with elements that the readers ignored, and those with ignored visuals.
+
+    Materials are not among them.
+    """
     holders: dict[int, set[str]] = {}
     for link in nodes.walk(root):
         for node in nodes.walk(link) if link.tag == "link" else ():
             holders.setdefault(id(node.origin), set()).add(nodes.name_of(link))
-    links = set[str]()
+    links, unseen = set[str](), set[str]()
     for diagnostic in read.diagnostics if read is not None else ():
         values = diagnostic.values
-        lacks = "left_out" in values or (diagnostic.code is DEFAULT_USED and "shape" in values)
-        if lacks:
-            links |= holders.get(id(diagnostic.origin), set())
-    return links
+        lost = values.get("left_out")
+        lacks = lost is not None or (diagnostic.code is DEFAULT_USED and "shape" in values)
+        if lacks and lost not in _MATERIALS:
+            holder = holders.get(id(diagnostic.origin), set())
+            (unseen if lost == "visual" else links).update(holder)
+    return links, unseen
 
 
 def _links_around(tree: Node, wanted: Node) -> set[str]:

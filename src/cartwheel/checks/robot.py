@@ -53,6 +53,7 @@ class Robot:
         root: The expanded ``<robot>``; None for an SDF model.
         mended: Links whose inertia was replaced.
         cut: Links that lost an unreadable element.
+        unseen: Links that lost only visuals.
         displaced: Links whose joint is unreadable, so that their pose is unknown.
     """
 
@@ -63,12 +64,14 @@ class Robot:
         *,
         mended: Iterable[str] = (),
         cut: Iterable[str] = (),
+        unseen: Iterable[str] = (),
         displaced: Iterable[str] = (),
     ) -> None:
         self.description = description
         self.root = root
         self.mended = frozenset(mended)
         self.cut = frozenset(cut)
+        self._unseen = frozenset(unseen)
         self.links = {link.name: link for link in description.links}
         self.joints = {joint.name: joint for joint in description.joints}
         self.inbound: dict[str, Joint] = {}
@@ -109,7 +112,7 @@ class Robot:
 
     def _lacking(self, *kinds: str) -> frozenset[str]:
         """Links with a missing mesh in elements of these kinds."""
-        found = set(self.cut)
+        found = set(self.cut | self._unseen if "visual" in kinds else self.cut)
         for node in nodes.children(self.root, "link"):
             link = self.links.get(nodes.name_of(node))
             if link is None:

@@ -20,9 +20,7 @@ from cartwheel.corpus.drive_causes import (
     wrong_sizes,
 )
 from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
-from cartwheel.corpus.dropped_joints import dropped_joints, moves_nothing
 from cartwheel.corpus.fall_causes import (
-    LEFT_OUT,
     cause_of_fall,
     falls_through,
     has_devices,
@@ -39,6 +37,7 @@ from cartwheel.corpus.missing_movers import (
     unmanaged_controllers,
     unmanaged_hardware,
 )
+from cartwheel.corpus.movers import LEFT_OUT, dropped_joints, moves_nothing
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.model import RobotDescription

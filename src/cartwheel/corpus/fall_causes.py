@@ -9,7 +9,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links
 from cartwheel.codes import devices, files, robot
 from cartwheel.corpus.faults import coded, most_severe
-from cartwheel.corpus.movers import may_move
+from cartwheel.corpus.movers import LEFT_OUT, may_move
 from cartwheel.corpus.verdict import Stand, Verdict
 from cartwheel.description.kinematics import carried
 from cartwheel.description.model import Joint, RobotDescription
@@ -31,8 +31,6 @@ _STANDING = frozenset(
 )
 _ABSENT = frozenset({files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREADABLE})
 """Reasons why a shape is missing."""
-LEFT_OUT = frozenset({files.INCLUDE_ABSENT, files.MACRO_ABSENT})
-"""Reasons why a part of the robot is missing."""
 _LACKING = frozenset(
     {
         robot.WHEEL_WITHOUT_COLLISION,
