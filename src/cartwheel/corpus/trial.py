@@ -344,10 +344,9 @@ def _joints_moved(
     gains = weak_gains(robot, started)
     upright = model.pose
     reached = [*motion.reaches(world, model, robot, started, gains)]
-    fell: list[Diagnostic] = []
-    if verdict.stand is not None and verdict.stand.state == "yes":
-        names = [each.joint for each in reached]
-        fell += toppled(model, Robot(robot, None), names, upright)
+    stood = verdict.stand is not None and verdict.stand.state == "yes"
+    names = [each.joint for each in reached]
+    fell = [*toppled(model, Robot(robot, None), names, upright)] if stood else []
     reached += posed(world, model, robot)
     verdict = replace(verdict, reaches=tuple(reached))
     late = {each.joint for each in reached if not each.arrived}
