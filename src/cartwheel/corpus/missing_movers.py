@@ -156,12 +156,18 @@ def missing_movers(
         if each.code is running.CONTROLLER_NOT_STARTED
         and each.values.get("cause") not in _ALTERNATIVE
     }
+    ignored = {
+        each.values.get("joint"): each
+        for each in said
+        if each.code is devices.TRANSMISSION_IGNORED and each.values.get("joint")
+    }
     unread: Diagnostic | None = None
     for name in verdict.spawned:
         if name in verdict.controllers:
             continue
         if name in unstarted and not _broadcasts(unstarted[name]):
             reason = unstarted[name]
+            reason = ignored.get(reason.values.get("joint")) or reason
             unknown = reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number
             if unknown and not _is_prefixed(reason):
                 # The part that contains the joint may be in a file that is absent.
