@@ -1,4 +1,4 @@
-"""Robots that fall over when their joints move."""
+"""Robots that come down, or fall over, when their joints move."""
 
 import pytest
 
@@ -50,3 +50,24 @@ def test_a_robot_may_fall_when_its_legs_move(tmp_path):
     verdict = tried(tmp_path, base, leg, joint, MOTOR.format(name="leg"))
     assert verdict.reaches
     assert not verdict.faults
+
+
+LIFT = (
+    '<joint name="foot_joint" type="prismatic"><parent link="base"/><child link="foot"/>'
+    '<axis xyz="0 0 1"/><limit lower="-0.3" upper="0.3" effort="1000" velocity="2"/></joint>'
+)
+HELD = (
+    '<gazebo><plugin name="m" filename="gz-sim-joint-position-controller-system">'
+    "<joint_name>foot_joint</joint_name><p_gain>{gain}</p_gain><d_gain>200</d_gain>"
+    "<initial_position>0.1</initial_position></plugin></gazebo>"
+)
+
+
+@pytest.mark.parametrize(("gain", "state"), [(20000, "yes"), (1500, "sinks")])
+def test_a_robot_that_bends_its_legs_on_purpose_does_not_sink(tmp_path, gain, state):
+    """It does if the load bends them further."""
+    base = LINK.format(name="base", z=0.5, mass=5, size="0.3 0.3 0.1")
+    foot = LINK.format(name="foot", z=0.05, mass=5, size="0.5 0.5 0.1")
+    stand = tried(tmp_path, base, foot, LIFT, HELD.format(gain=gain)).stand
+    assert stand.sunk > 0.09
+    assert stand.state == state

@@ -8,13 +8,15 @@ from collections.abc import Mapping, Sequence
 
 from cartwheel.api import Model, World
 from cartwheel.checks.gains import following_gain, span
-from cartwheel.checks.resting import starting_poses
+from cartwheel.checks.resting import starting_positions
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.flying.thrusters import is_in_space
 from cartwheel.corpus.loads import held_by, resistance
 from cartwheel.corpus.verdict import SHORT, Reach, Stand
+from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.dialects.gz.initial_targets import initial_targets
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.sinking import is_in_water, sinking_load
 from cartwheel.geometry import Pose, rotate
@@ -65,20 +67,34 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
         size=Robot(description, None).size,
         floats=is_in_water(description) or is_in_space(description),
         heavy=sinking_load(description) is not None,
-        settled=_settled(description, start, after),
+        settled=_settled(description, start, after, positions(world, model)),
     )
 
 
-def _settled(description: RobotDescription, start: Pose, after: Pose) -> float | None:
+def _settled(
+    description: RobotDescription, start: Pose, after: Pose, reached: Mapping[str, float]
+) -> float | None:
     """Decrease in height of a robot's lowest collision if all links move with the root, m.
 
-    Joints that start outside their limits are moved into them, so that the robot may come down.
-    `start` and `after` are poses of the root. None for a robot without collisions.
+    Joints that start outside their limits are moved into them, and plugins may bend legs to their
+    initial targets, so that the robot comes down. None for a robot without collisions.
+
+    Args:
+        description: The robot.
+        start: The pose of its root at the start.
+        after: The pose of its root at the end.
+        reached: The positions of the joints at the end, rad or m, by name.
     """
     robot = Robot(description, None)
     placed = {link.name: link.pose for link in description.links}
     before = _lowest(robot, placed, start)
-    now = _lowest(robot, starting_poses(robot), after)
+    bent = starting_positions(robot)
+    for name, target in initial_targets(description).items():
+        if name in reached:
+            # Further than the target, the load moves it.
+            begin = bent.get(name, 0.0)
+            bent[name] = min(max(reached[name], min(begin, target)), max(begin, target))
+    now = _lowest(robot, link_poses(description, bent), after)
     return None if before is None or now is None else before - now
 
 
