@@ -4,6 +4,7 @@ import pytest
 from tests.corpus.carts import cart, plugin, written
 
 from cartwheel.codes.robot import (
+    BODY_ON_GROUND,
     CASTER_FRICTION,
     SKID_STEERING,
     STEERING_REVERSED,
@@ -115,6 +116,17 @@ def test_swapped_wheels_and_a_caster_that_is_dragged(tmp_path):
     verdict = try_robot(written(tmp_path, dragging(0.5), swapped), standing=1.0)
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("turn", WHEELS_SWAPPED, "file")
+
+
+def test_wheels_that_carry_nothing_do_not_drive(tmp_path):
+    """The centre of mass is above a caster."""
+    heavy = cart(0.1).replace(
+        '<inertial><mass value="2"/>', '<inertial><origin xyz="0.12 0 0"/><mass value="20"/>', 1
+    )
+    verdict = try_robot(written(tmp_path, heavy, plugin()), standing=1.0)
+    assert verdict.stands
+    assert not verdict.drives[0].follows
+    assert {(each.code, each.source) for each in verdict.faults} == {(BODY_ON_GROUND, "file")}
 
 
 OBLIQUE = WHEEL_FRICTION_OBLIQUE.diagnostic("")

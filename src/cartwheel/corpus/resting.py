@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 import numpy as np
 
@@ -30,6 +30,10 @@ from cartwheel.geometry import Pose, rotate
 
 _CARRIES = 0.1
 """Smallest part of the weight that is reported."""
+_UNLOADED = 0.1
+"""Part of the weight below which driven wheels hardly push a robot."""
+_MOST = 0.5
+"""Part of the weight that other parts then carry."""
 _SLACK = 1e-3
 """Effort of a joint that nothing holds, relative to the weight at the robot's size."""
 _SLIPPERY = 0.3
@@ -82,6 +86,7 @@ def dragging(
                 load = abs(float(np.dot(contact.force, contact.normal))) / _INSTANTS
                 loads[contact.links[0]] = loads.get(contact.links[0], 0.0) + load
     weight = _GRAVITY * robot.description.mass
+    yield from _unloaded(robot, wheels, loads, weight)
     for name, load in loads.items():
         holder = _holder(robot, name)
         if name in wheels or holder is None or load < _CARRIES * weight:
@@ -101,6 +106,32 @@ def dragging(
             origin=holder.origin,
             hint="Command the joint before the robot drives, or add a controller that holds it.",
         )
+
+
+def _unloaded(
+    robot: Robot, wheels: Set[str], loads: Mapping[str, float], weight: float
+) -> Iterator[Diagnostic]:
+    """Driven wheels that carry almost nothing, because other parts carry the robot.
+
+    Args:
+        robot: The robot.
+        wheels: The links of its driven wheels.
+        loads: The forces with which links press on the ground, N.
+        weight: That of the robot, N.
+    """
+    carried = sum(load for name, load in loads.items() if name in wheels)
+    others = {name: load for name, load in loads.items() if name not in wheels}
+    if not others or carried >= _UNLOADED * weight or sum(others.values()) < _MOST * weight:
+        return
+    name = max(others, key=others.__getitem__)
+    yield robot_codes.BODY_ON_GROUND.diagnostic(
+        message=f"the driven wheels carry {carried / weight:.0%} of the weight, because "
+        f'"{name}" carries {others[name] / weight:.0%} of it, so the wheels hardly push the robot',
+        severity="info",
+        values={"link": name, "joint": "", "part": others[name] / weight},
+        origin=robot.links[name].origin if name in robot.links else robot.description.origin,
+        hint="Place the centre of mass nearer to the driven wheels, or lift this part.",
+    )
 
 
 def drives_apart(robot: Robot, drives: Sequence[Drive]) -> Iterator[Diagnostic]:
