@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from cartwheel.checks.rules import RULES
 from cartwheel.checks.stated_sizes import controlled_sides, controlled_steering
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
-from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
+from cartwheel.codes.devices import PLUGIN_OF_OTHER_GAZEBO, PLUGIN_PARAMETER_UNKNOWN
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.codes.world import PHYSICS_SETTING_IGNORED, PLANE_NOT_STATIC
@@ -26,12 +26,14 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.launches import (
     LaunchSearch,
     OwnLaunches,
+    in_simulator,
     needs_expansion,
     unexpanded,
     unread,
 )
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.dialects.gz.gazebo_only import gazebo_of, other_gazebo
 from cartwheel.dialects.ros_control.selection import Selection
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
@@ -109,7 +111,7 @@ def check(
                 *subject.find_unread(),
             ]
         )
-    findings = list(outside_stand_ins(subject.files[0], findings))
+    findings = list(outside_stand_ins(subject.files[0], _of_loaded(subject, findings)))
     order = {file: index for index, file in enumerate(subject.files)}
     findings.sort(key=lambda finding: place(finding, order))
     return Report(
@@ -141,6 +143,18 @@ def _subject(
         described = read.models
     elif read is not None:
         described = (read,)
+    find = launches or LaunchSearch(opened.packages.package_path).of
+    found: dict[Path, OwnLaunches] = {}
+
+    def search(description: Path) -> OwnLaunches:
+        return found.setdefault(description, find(description))
+
+    file = Path(opened.files[0])
+    if isinstance(read, RobotDescription) and any(
+        gazebo_of(tag.filename) for tag in read.all_plugins
+    ):
+        read = in_simulator(read, file, search(file).launches)
+        described = (read,)
     root = opened.root if opened.root.tag == "robot" else None
     unseen: set[str] = set()
     if root is None:
@@ -151,14 +165,7 @@ def _subject(
         Robot(each, root, mended=mended | cut, cut=cut, unseen=unseen, displaced=lost)
         for each in described
     )
-    find = launches or LaunchSearch(opened.packages.package_path).of
-    found: dict[Path, OwnLaunches] = {}
-
-    def search(description: Path) -> OwnLaunches:
-        return found.setdefault(description, find(description))
-
     control, launched = controller_files_of(robots, opened.packages, given, search, selected)
-    file = Path(opened.files[0])
     plain = unexpanded(file, search(file).launches) if needs_expansion(file) else ()
     subject = Subject(
         root=opened.root,
@@ -275,6 +282,20 @@ def _distinct(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
         if all(each.identity != other.identity for other in (first, *first.also)):
             distinct[key] = replace(first, also=(*first.also, each))
     return list(distinct.values())
+
+
+def _of_loaded(subject: Subject, findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The findings without those about what is in a plugin that Gazebo does not load."""
+    idle = {
+        id(element.origin)
+        for robot in subject.robots
+        for tag, sensor in robot.plugins()
+        if other_gazebo(robot.description, tag, sensor) is not None
+        for element in tag.element.walk()
+    }
+    for each in findings:
+        if id(each.origin) not in idle or each.code is PLUGIN_OF_OTHER_GAZEBO:
+            yield each
 
 
 def _is_idle(finding: Diagnostic) -> bool:

@@ -19,7 +19,6 @@ from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.interfaces import COMMANDS, PLAIN, SYSTEMS, hardware_of
 from cartwheel.dialects.ros_control.parameters import OWN, SIZES, Role, Row, rows
-from cartwheel.dialects.stopping import interfaces_of
 from cartwheel.errors import Diagnostic, Severity, UnknownNameError
 
 _INTERFACES = {
@@ -214,7 +213,12 @@ def offers(robot: Robot, *, ros2: bool) -> dict[str, list[tuple[str, Element]]]:
                 ]
                 offered.append(("", joint))
                 continue
-            for each in interfaces_of(joint):
+            written = [*joint.find_all("hardwareInterface")] or [
+                each
+                for actuator in held.find_all("actuator")
+                for each in actuator.find_all("hardwareInterface")
+            ]
+            for each in written:
                 short = each.text.strip().rpartition("/")[2]
                 offered += [(name, each) for name in _INTERFACES.get(short, ())]
             offered.append(("", joint))

@@ -9,7 +9,6 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 from cartwheel.checks import nodes, spelling
 from cartwheel.checks.rule import limited
@@ -17,7 +16,7 @@ from cartwheel.checks.subject import ABSENT, Subject
 from cartwheel.codes import codes_of, devices, files
 from cartwheel.codes import tags as codes
 from cartwheel.description.elements.node import Node
-from cartwheel.description.files.package_folders import stand_ins
+from cartwheel.description.files.package_folders import is_in_stand_in
 from cartwheel.description.model import MOMENTS
 from cartwheel.errors import Diagnostic, Origin
 
@@ -215,22 +214,18 @@ def outside_stand_ins(file: str, findings: Iterable[Diagnostic]) -> Iterator[Dia
         file: The file that is checked. If it is a stand-in itself, all findings are kept.
         findings: The findings.
     """
-    own = _is_inside(file)
+    own = is_in_stand_in(file)
     for each in findings:
-        if own or each.origin is None or not _is_inside(each.origin.file):
+        if own or each.origin is None or not is_in_stand_in(each.origin.file):
             yield each
         elif each.severity == "error" and (call := _call(each.origin)) is not None:
             yield replace(each, origin=call, mark="", instead="", place="")
-
-
-def _is_inside(file: str) -> bool:
-    return bool(file) and Path(file).absolute().is_relative_to(stand_ins())
 
 
 def _call(origin: Origin) -> Origin | None:
     """The innermost call of a macro in the user's files that leads to a place."""
     for index, text in enumerate(origin.stack):
         call = _CALL.fullmatch(text)
-        if call is not None and not _is_inside(call[1]):
+        if call is not None and not is_in_stand_in(call[1]):
             return Origin(file=call[1], line=int(call[2]), stack=origin.stack[index + 1 :])
     return None

@@ -13,10 +13,10 @@ from cartwheel.checks.robot import Robot
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
-from cartwheel.description.elements.simulator import Simulator, simulator_of
+from cartwheel.description.elements.simulator import simulator_of
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.launches import LaunchUse, OwnLaunches, chosen
-from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.model import RobotDescription, Simulator, WorldDescription
 from cartwheel.dialects.ros_control.selection import Selection
 from cartwheel.errors import Diagnostic, Origin
 

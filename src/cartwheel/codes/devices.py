@@ -333,3 +333,9 @@ SENSOR_SYSTEM_MISSING = Code(
     "warning",
     "a world for gz-sim does not load the system that publishes a sensor",
 )
+PLUGIN_OF_OTHER_GAZEBO = Code(
+    "CW496",
+    "plugin-of-other-gazebo",
+    "warning",
+    "a plugin exists only in the Gazebo in which the robot is not started",
+)

@@ -292,10 +292,6 @@ def _measured(
     for topic in verdict.silent:
         reason = coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
-    for reason in _unpublished(verdict, description, findings):
-        names = reason.values.get("sensors", ())
-        subject = ", ".join(map(str, names)) if isinstance(names, tuple) else ""
-        yield Fault(test="publish", subject=subject, reason=reason)
     for subject, reason in held_bases(verdict, description, findings):
         yield Fault(test="drive", subject=subject, reason=reason)
 
@@ -373,6 +369,10 @@ def _measured(
     for flight in verdict.flights:
         if not flight.flies:
             yield Fault(test="fly", subject=flight.topic)
+    for reason in _unpublished(verdict, description, findings):
+        sensors = reason.values.get("sensors", ())
+        subject = ", ".join(map(str, sensors)) if isinstance(sensors, tuple) else ""
+        yield Fault(test="publish", subject=subject, reason=reason)
 
 
 def _unpublished(

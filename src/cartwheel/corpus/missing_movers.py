@@ -20,9 +20,10 @@ from cartwheel.corpus.movers import (
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.gz.gazebo_only import not_loaded
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
-from cartwheel.dialects.ros_only import other_ros, other_tags
+from cartwheel.dialects.ros_only import other_tags
 from cartwheel.dialects.world_plugins import refused
 from cartwheel.errors import Diagnostic
 
@@ -94,7 +95,7 @@ def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterato
         return
     reason = next((each for each in said if each.values.get("stops") is True), None)
     for tag in managers(description) if reason is not None else ():
-        if other_ros(description, tag) is None:
+        if not_loaded(description, tag) is None:
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 
 
@@ -116,9 +117,13 @@ def missing_movers(
     said = verdict.diagnostics
     all_moves = verdict.passes and _is_all_driven(verdict, description)
     for tag in moving_plugins(description):
+        unloaded = not_loaded(description, tag)
+        if unloaded is not None and unloaded.severity == "info":
+            # Another plugin moves the robot in its Gazebo.
+            continue
         if is_known(tag):
             # Why it is left out here does not matter if Gazebo does not read these tags.
-            reason = refused(tag) or other_ros(description, tag) or other_tags(description, tag)
+            reason = refused(tag) or unloaded or other_tags(description, tag)
             reason = reason or most_severe(
                 each
                 for each in said
@@ -156,18 +161,12 @@ def missing_movers(
         if each.code is running.CONTROLLER_NOT_STARTED
         and each.values.get("cause") not in _ALTERNATIVE
     }
-    ignored = {
-        each.values.get("joint"): each
-        for each in said
-        if each.code is devices.TRANSMISSION_IGNORED and each.values.get("joint")
-    }
     unread: Diagnostic | None = None
     for name in verdict.spawned:
         if name in verdict.controllers:
             continue
         if name in unstarted and not _broadcasts(unstarted[name]):
             reason = unstarted[name]
-            reason = ignored.get(reason.values.get("joint")) or reason
             unknown = reason.values.get("cause") == devices.CONTROLLER_JOINT_UNKNOWN.number
             if unknown and not _is_prefixed(reason):
                 # The part that contains the joint may be in a file that is absent.
@@ -225,7 +224,7 @@ def _not_started(
     description: RobotDescription, tag: PluginTag, findings: Callable[[], Sequence[Diagnostic]]
 ) -> Diagnostic | None:
     """Why Gazebo does not start a controller manager; None if it does."""
-    reason = other_ros(description, tag)
+    reason = not_loaded(description, tag)
     if reason is not None or without_parameters(tag) is None:
         return reason
     return next(
@@ -350,11 +349,11 @@ def held_bases(
 
 
 def is_unmanaged(controller: str, verdict: Verdict, description: RobotDescription) -> bool:
-    """Whether Gazebo does not run a controller that was tested, because its manager exists only in
-    another version of ROS.
+    """Whether Gazebo does not run a controller that was tested, because its manager exists only for
+    another Gazebo or version of ROS.
     """
     tags = managers(description) if controller in verdict.controllers else []
-    return bool(tags) and all(other_ros(description, tag) is not None for tag in tags)
+    return bool(tags) and all(not_loaded(description, tag) is not None for tag in tags)
 
 
 def is_started(controller: str, verdict: Verdict) -> bool:

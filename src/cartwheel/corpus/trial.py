@@ -40,6 +40,7 @@ from cartwheel.description.launches import (
     LaunchSearch,
     LaunchUse,
     chosen,
+    in_simulator,
     launches_near,
     moves,
     own_launches,
@@ -48,6 +49,7 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.gz.gazebo_only import with_own_plugins
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.selection import (
     Selection,
@@ -114,13 +116,14 @@ def try_robot(
                 default = _for_simulation(robot, file, given, package_path)
                 if default is not None:
                     robot, arguments = default, given
-        robot = with_published_control(robot, launches, package_path)
+        robot = in_simulator(with_published_control(robot, launches, package_path), file, launches)
     except CartwheelError as error:
         reason = error.diagnostic()
         return replace(
             verdict, error=str(error), failure=reason, faults=(Fault(test="load", reason=reason),)
         )
     verdict = replace(_described(verdict, robot), observed=(*unexpanded(file, launches),))
+    whole, robot = robot, with_own_plugins(robot)  # as in Gazebo
     spawned: tuple[str, ...] = ()
     selected: Selection | None = None
     if controllers is None:
@@ -168,8 +171,8 @@ def try_robot(
         ),
         is_inside,
     )
-    verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
-    return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
+    verdict = replace(verdict, movers=tuple(movers(verdict, whole)))
+    return replace(verdict, faults=tuple(faults(verdict, whole, findings)))
 
 
 def _for_simulation(
@@ -234,10 +237,7 @@ def _is_unused(said: Diagnostic, selected: Selection | None) -> bool:
 
 def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
     """Results known without a world."""
-    tags = [
-        *robot.plugins,
-        *(tag for link in robot.links for one in link.sensors for tag in one.plugins),
-    ]
+    tags = robot.all_plugins
     names = list(dict.fromkeys(short_name(tag.filename) for tag in tags if refused(tag) is None))
     known = {name for name in names if plugin_named(name) or name in BUILT_IN}
     return replace(

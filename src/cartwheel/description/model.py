@@ -20,6 +20,8 @@ from typing import Any, Literal
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.geometry import Pose, Vec3
 
+Simulator = Literal["", "classic", "gz"]
+"""Gazebo Classic or gz-sim; empty if it may be for either of them."""
 Rgba = tuple[float, float, float, float]
 """Red, green, blue, alpha, each 0 to 1."""
 
@@ -535,6 +537,8 @@ class RobotDescription:
     """The expanded XML, as in the ROS parameter robot_description."""
     arguments: Mapping[str, str] = field(default_factory=dict, compare=False)
     """The xacro's arguments by name, including defaults."""
+    simulator: Simulator = ""
+    """The Gazebo in which the launch files of the author start it; empty if it is unknown."""
     origin: Origin
 
     def link(self, name: str) -> Link | None:
@@ -544,6 +548,12 @@ class RobotDescription:
     def joint(self, name: str) -> Joint | None:
         """The joint with this name."""
         return next((joint for joint in self.joints if joint.name == name), None)
+
+    @property
+    def all_plugins(self) -> tuple[PluginTag, ...]:
+        """The plugins of the model, then those in its sensors."""
+        sensors = (sensor for link in self.links for sensor in link.sensors)
+        return (*self.plugins, *(tag for sensor in sensors for tag in sensor.plugins))
 
     @property
     def canonical_pose(self) -> Pose:

@@ -188,6 +188,11 @@ def other_ros(robot: RobotDescription, tag: PluginTag) -> Diagnostic | None:
     )
 
 
+def is_built(robot: RobotDescription, tag: PluginTag) -> bool:
+    """Whether a package in the repository of a robot builds a library of a plugin's name."""
+    return _builds(Path(robot.origin.file), short_name(tag.filename))
+
+
 def _builds(file: Path, name: str) -> bool:
     """Whether a package in the repository of a file builds a library of this name."""
     root = repository_of(file)

@@ -2,34 +2,12 @@
 
 from __future__ import annotations
 
-from cartwheel.codes import devices
 from cartwheel.description.model import Element, RobotDescription
-from cartwheel.errors import Diagnostic
 
 _ABSENT = frozenset({"floating", "planar"})
 """Types of joints that Gazebo does not create for a URDF."""
 _ACCEPTED = frozenset({"EffortJointInterface", "PositionJointInterface", "VelocityJointInterface"})
 CONSEQUENCE = "so Gazebo starts no controller of this robot"
-
-
-def interfaces_of(joint: Element) -> list[Element]:
-    """The interfaces of a transmission's joint. The parser skips a joint without any."""
-    return [each for each in joint.find_all("hardwareInterface") if each.text.strip()]
-
-
-def without_interface(transmission: Element, joint: Element) -> Diagnostic:
-    """The diagnostic for a joint of a transmission without an interface, which the parser skips."""
-    name, label = joint.attribute("name") or "", transmission.attribute("name") or ""
-    actuators = transmission.find_all("actuator")
-    why = "it has no <hardwareInterface>"
-    if any(interfaces_of(actuator) for actuator in actuators):
-        why = "the <hardwareInterface> is in the <actuator>"
-    return devices.TRANSMISSION_IGNORED.diagnostic(
-        f'ROS ignores the joint "{name}" of transmission "{label}", because {why}',
-        origin=joint.origin,
-        values={"joint": name, "transmission": label},
-        hint="Write the <hardwareInterface> in the <joint>.",
-    )
 
 
 def stops(description: RobotDescription, transmission: Element, joint: Element) -> bool:
@@ -66,7 +44,9 @@ def _interfaces(transmission: Element, joint: Element) -> list[Element]:
         and kind.text.strip()
         and any(each.attribute("name") for each in transmission.find_all("actuator"))
     )
-    return interfaces_of(joint) if is_read else []
+    if not is_read:
+        return []
+    return [each for each in joint.find_all("hardwareInterface") if each.text.strip()]
 
 
 def _is_created(description: RobotDescription, name: str) -> bool:

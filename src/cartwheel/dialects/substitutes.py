@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import re
 from collections.abc import Iterator, Mapping
@@ -109,25 +110,40 @@ def substitute(tag: PluginTag) -> Substitute | None:
     for pattern, purpose, filename in _PURPOSES:
         plugin = plugin_named(filename) if re.search(pattern, name) else None
         if plugin is not None:
-            inner = "".join(_translated(plugin, tag.element, _VALUES.get(filename, {})))
             return Substitute(
                 filename=filename,
                 purpose=purpose,
-                text=f'<plugin name="{escape(tag.name[:_LONGEST])}" '
-                f'filename="{filename}">{inner}</plugin>',
+                text=rewritten(tag, filename),
                 sensor_type=plugin.sensor_type if plugin.for_sensor else "",
             )
     return None
 
 
+def rewritten(tag: PluginTag, filename: str, *, name: str = "", ros2: bool = False) -> str:
+    """Returns the text of a supported plugin with the values of another one.
+
+    Args:
+        tag: The other plugin.
+        filename: The file of the supported plugin.
+        name: Its name; by default that of the other one.
+        ros2: Whether to write the tags of ROS 2, which contain no capital letters.
+    """
+    plugin = plugin_named(filename)
+    values = _VALUES.get(filename, {})
+    inner = "" if plugin is None else "".join(_translated(plugin, tag.element, values, ros2=ros2))
+    shown = escape(name or tag.name[:_LONGEST])
+    return f'<plugin name="{shown}" filename="{filename}">{inner}</plugin>'
+
+
 def _translated(
-    plugin: type[Plugin[object]], element: Element, more: Mapping[str, str]
+    plugin: type[Plugin[object]], element: Element, more: Mapping[str, str], *, ros2: bool = False
 ) -> Iterator[str]:
     """Returns the supported tags for which the unsupported plugin has a value.
 
     Tags that the supported plugin requires, and joints, have the value `_BLANK` if it has none.
     """
     values = {_words(each.tag): each.text.strip() for each in element.children if each.text.strip()}
+    values |= dict(_other_sizes(values))
     ros = element.find("ros/namespace")
     namespace = ros.text.strip() if ros is not None else values.get(_words("robotNamespace"), "")
     if namespace and not more:
@@ -156,7 +172,18 @@ def _translated(
         ):
             found = _BLANK
         if found is not None:
-            yield _written(tags[0], found)
+            plain = (each for each in tags if ros2 and each.islower())
+            yield _written(next(plain, tags[0]), found)
+
+
+def _other_sizes(values: Mapping[frozenset[str], str]) -> Iterator[tuple[frozenset[str], str]]:
+    """Returns the radius of the wheels if their diameter is stated, or the other way round."""
+    for stated, other, factor in (("diameter", "radius", 0.5), ("radius", "diameter", 2.0)):
+        wanted = frozenset({"wheel", other})
+        text = values.get(frozenset({"wheel", stated}), "")
+        with contextlib.suppress(ValueError):
+            if wanted not in values:
+                yield wanted, f"{factor * float(text):g}"
 
 
 def _written(tag: str, value: str) -> str:

@@ -14,7 +14,6 @@ from tests.dialects.ros_control.arms import (
 )
 from tests.dialects.ros_control.arms import ros2_system as system
 
-from cartwheel.checks import check
 from cartwheel.codes import devices, running
 from cartwheel.messages import from_dict
 
@@ -233,25 +232,3 @@ def test_a_drive_and_controllers_may_name_one_joint(bench, order, interface):
         before = made.position("beam_joint")
         made.world.run(0.5)
         assert made.position("beam_joint") - before == pytest.approx(1.5, rel=0.01)
-
-
-INTERFACE = "<hardwareInterface>PositionJointInterface</hardwareInterface>"
-
-
-@pytest.mark.wording
-@pytest.mark.parametrize("actuator", ["", INTERFACE])
-def test_a_joint_without_an_interface_is_skipped_by_the_parser_of_ros(bench, actuator, tmp_path):
-    """Before ROS Indigo, the interface was in the actuator."""
-    listed = (
-        '<transmission name="t"><type>transmission_interface/SimpleTransmission</type>'
-        f'<joint name="a_joint"/><actuator name="m">{actuator}</actuator></transmission>'
-    )
-    text = robot(two_beams(axis="0 0 1") + listed, ROS1)
-    made = bench(text, {"c": group("a_joint")})
-    (note,) = coded(made.warnings, devices.TRANSMISSION_IGNORED, joint="a_joint")
-    assert ("is in the <actuator>" in note.message) == bool(actuator)
-    cause = devices.CONTROLLER_INTERFACE_MISMATCH.number
-    assert coded(made.warnings, running.CONTROLLER_NOT_STARTED, joint="a_joint", cause=cause)
-    path = tmp_path / "arm.urdf"
-    path.write_text(text)
-    assert coded(check(path).findings, devices.TRANSMISSION_IGNORED, joint="a_joint")

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import Literal
+from collections.abc import Iterable
 
 from cartwheel.description.elements.node import Node
+from cartwheel.description.model import Simulator
 
 _CLASSIC = re.compile(r"^(?:lib)?gazebo_")
 _GZ = re.compile(r"^(?:lib)?(?:gz|ign|ignition)[-_]")
 """Beginnings of the names of plugins for Gazebo Classic and for gz-sim."""
-
-
-Simulator = Literal["", "classic", "gz"]
-"""Gazebo Classic or gz-sim; empty if it may be for either of them."""
 
 
 def simulator_of(root: Node) -> Simulator:
@@ -22,10 +19,15 @@ def simulator_of(root: Node) -> Simulator:
     while left:
         node = left.pop()
         if node.tag == "plugin":
-            files.append(node.attributes.get("filename", "").rpartition("/")[2])
+            files.append(node.attributes.get("filename", ""))
         else:
             left += node.children
-    classic, gz = any(map(_CLASSIC.search, files)), any(map(_GZ.search, files))
-    if classic == gz:
-        return ""
-    return "classic" if classic else "gz"
+    found = simulators_of(files)
+    return found.pop() if len(found) == 1 else ""
+
+
+def simulators_of(filenames: Iterable[str]) -> set[Simulator]:
+    """The versions of Gazebo that some plugins are for."""
+    names = [each.rpartition("/")[2] for each in filenames]
+    found: set[Simulator] = {"classic"} if any(map(_CLASSIC.search, names)) else set()
+    return found | {"gz"} if any(map(_GZ.search, names)) else found

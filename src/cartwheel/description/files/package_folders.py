@@ -45,6 +45,11 @@ def stand_ins() -> Path:
     return share() / "standins"
 
 
+def is_in_stand_in(file: str) -> bool:
+    """Whether a file is one of Cartwheel's own packages; False for an empty name."""
+    return bool(file) and Path(file).absolute().is_relative_to(stand_ins())
+
+
 def stand_in_name(path: Path) -> str | None:
     """The package that a file replaces; None unless the file is in a stand-in package."""
     root = stand_ins()

@@ -1,6 +1,7 @@
 """Reads launch files: the descriptions, xacro arguments and controller files that they name."""
 
 from cartwheel.description.files.repositories import root_of
+from cartwheel.description.launches.gazebos import in_simulator
 from cartwheel.description.launches.launch_use import LaunchUse, unread
 from cartwheel.description.launches.own import (
     LaunchSearch,
@@ -31,6 +32,7 @@ __all__ = [
     "OwnLaunches",
     "chosen",
     "controllers_for",
+    "in_simulator",
     "is_launch_file",
     "launches_near",
     "moves",

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
-from cartwheel.description.elements.simulator import Simulator
+from cartwheel.description.elements.simulator import simulators_of
 from cartwheel.description.launches.effort import UNKNOWN
+from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.spawning import split, world_in
+from cartwheel.description.model import RobotDescription, Simulator
 
 _PACKAGES: Mapping[str, Simulator] = {
     "gazebo_ros": "classic",
@@ -79,3 +82,24 @@ class Gazebos:
         if kind == "gz":
             world = world_in(words) or (UNKNOWN if any(UNKNOWN in each for each in words) else "")
             self.worlds += [world] if world else []
+
+
+def in_simulator(
+    robot: RobotDescription, file: Path, launches: Iterable[LaunchUse]
+) -> RobotDescription:
+    """A robot with the Gazebo in which launch files start it.
+
+    If none is known to start it, and the robot has plugins for both, it is the Gazebo that the
+    other launch files start.
+
+    Args:
+        robot: The robot.
+        file: Its file.
+        launches: The launch files of its author.
+    """
+    path, launches = file.resolve(), list(launches)
+    own = [each for each in launches if each.description and each.description.resolve() == path]
+    kinds = {kind for each in own for kind in each.gazebos}
+    if not kinds and len(simulators_of(tag.filename for tag in robot.all_plugins)) > 1:
+        kinds = {kind for each in launches for kind in each.gazebos}
+    return replace(robot, simulator=kinds.pop()) if len(kinds) == 1 else robot

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from cartwheel.description.elements.simulator import Simulator
+from cartwheel.description.model import Simulator
 from cartwheel.errors import Diagnostic, Origin
 
 

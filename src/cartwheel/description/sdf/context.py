@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 from cartwheel.codes import tags as codes
 from cartwheel.codes.files import SDF_VERSION
 from cartwheel.description.elements.numbers import LARGEST, position
-from cartwheel.description.elements.simulator import Simulator, simulator_of
+from cartwheel.description.elements.simulator import simulator_of
 from cartwheel.errors import Code, Details, Diagnostic
 from cartwheel.geometry import Pose, Quat, quat_normalize
 from cartwheel.similar_names import meant, suggestion
@@ -19,7 +19,7 @@ from cartwheel.similar_names import meant, suggestion
 if TYPE_CHECKING:
     from cartwheel.description.elements.xml import Node
     from cartwheel.description.files.packages import Packages
-    from cartwheel.description.model import Rgba
+    from cartwheel.description.model import Rgba, Simulator
 
 Version = tuple[int, int]
 OLDEST: Version = (1, 0)

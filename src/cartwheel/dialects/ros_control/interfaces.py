@@ -11,13 +11,7 @@ from typing import Literal
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST, MOST_RATIO
 from cartwheel.description.model import Element, PluginTag, RobotDescription
-from cartwheel.dialects.stopping import (
-    CONSEQUENCE,
-    interfaces_of,
-    refused_interface,
-    stops,
-    without_interface,
-)
+from cartwheel.dialects.stopping import CONSEQUENCE, refused_interface, stops
 from cartwheel.dialects.tags import invalid
 from cartwheel.errors import Code, Diagnostic, Origin, Severity, Value
 from cartwheel.simulation.limits import FARTHEST
@@ -116,19 +110,28 @@ def transmissions(
         kind = element.find("type")
         if kind is None and element.attribute("type"):
             # A format older than ros_control, which its parser also ignores.
-            text = f"{label} uses the PR2 format, so it drives no joint"
-            own = element.attribute("name")
-            warn(devices.TRANSMISSION_IGNORED, element, text, "info", transmission=own)
+            notes.append(
+                devices.TRANSMISSION_IGNORED.diagnostic(
+                    f"{label} uses the PR2 format, so it drives no joint",
+                    severity="info",
+                    origin=element.origin,
+                    values={"transmission": element.attribute("name")},
+                )
+            )
             continue
-        lacking = [joint for joint in joints if not interfaces_of(joint)]
-        notes += (without_interface(element, joint) for joint in lacking)
-        count = len(joints) - len(lacking)
-        if not joints or (count > 1 and not several):
-            text = f"{label} has no effect: it must have exactly one joint (got {count})"
-            warn(devices.TRANSMISSION_IGNORED, element, text, joints=count)
+        if not joints or (len(joints) > 1 and not several):
+            text = f"{label} has no effect: it must have exactly one joint (got {len(joints)})"
+            warn(devices.TRANSMISSION_IGNORED, element, text, joints=len(joints))
             continue
         for joint in joints:
             name = joint.attribute("name") or ""
+            written = list(joint.find_all("hardwareInterface"))
+            if not written:
+                written = [
+                    interface
+                    for actuator in element.find_all("actuator")
+                    for interface in actuator.find_all("hardwareInterface")
+                ]
             commands: list[str] = []
             refused = None if several else refused_interface(element, joint)
             if refused is not None:
@@ -136,21 +139,22 @@ def transmissions(
                 text = f'{label}: DefaultRobotHWSim does not offer "{offered}", {CONSEQUENCE}'
                 unknown = devices.INTERFACE_UNKNOWN
                 warn(unknown, refused, text, "error", interface=offered, stops=True)
-            for interface in interfaces_of(joint):
+            for interface in written:
                 short = interface.text.strip().rpartition("/")[2]
                 if short in _HARDWARE:
                     commands.append(_HARDWARE[short])
                 elif short not in _STATES_ONLY and interface is not refused:
                     text = f'{label}: the hardware interface "{interface.text}" does not exist'
                     warn(devices.INTERFACE_UNKNOWN, interface, text, interface=interface.text)
+            if not written:
+                text = f"{label} has no <hardwareInterface>, so nothing drives its joint"
+                warn(devices.TRANSMISSION_IGNORED, element, text, joint=name)
             if not _movable(description, name):
                 text = f'{label}: "{name}" is not a movable joint'
                 stopped = not several and stops(description, element, joint)
                 text += f", {CONSEQUENCE}" if stopped else ""
                 code = devices.TRANSMISSION_JOINT_UNKNOWN
                 warn(code, element, text, joint=name, stops=stopped)
-                continue
-            if joint in lacking:
                 continue
             before = by_name[name].commands if name in by_name else ()
             by_name[name] = JointInterfaces(

@@ -26,9 +26,9 @@ from cartwheel.checks.rules.devices.undriven_joints import may_drive
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import PluginTag
+from cartwheel.dialects.gz.gazebo_only import not_loaded
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_control.launched.mentions import started_by_others
-from cartwheel.dialects.ros_only import other_ros
 from cartwheel.errors import Diagnostic
 
 
@@ -66,7 +66,7 @@ def idle_manager(subject: Subject) -> Iterator[Diagnostic]:
             if not has_standard_hardware(robot, ros2=ros2) or not offers(robot, ros2=ros2):
                 continue
             for tag in managers(robot, ros2=ros2):
-                if other_ros(robot.description, tag) or without_parameters(tag):
+                if not_loaded(robot.description, tag) or without_parameters(tag):
                     # Its controllers do not start anyway.
                     continue
                 found = uncommanded(tag, selected.launch, selected.names, selected.loaded)
@@ -90,7 +90,7 @@ def _unstarted(robot: Robot, launch: Path, moving: Sequence[Controller]) -> Iter
     if started_by_others(file, {each.name for each in moving}):
         return
     for tag in managers(robot, ros2=moving[0].file.is_ros2):
-        if not other_ros(robot.description, tag) and not without_parameters(tag):
+        if not not_loaded(robot.description, tag) and not without_parameters(tag):
             yield unstarted(tag, launch, moving)
 
 

@@ -11,6 +11,7 @@ from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.gz.gazebo_only import other_gazebo
 from cartwheel.dialects.ros_only import other_ros, other_tags, unread_tags
 from cartwheel.dialects.substitutes import substitute
 from cartwheel.dialects.world_plugins import misplaced, refused
@@ -79,6 +80,15 @@ def plugin_of_other_ros(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for tag, _ in robot.plugins():
             found = other_ros(robot.description, tag) or other_tags(robot.description, tag)
+            if found is not None:
+                yield found
+
+
+@rule(devices_codes.PLUGIN_OF_OTHER_GAZEBO)
+def plugin_of_other_gazebo(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for tag, sensor in robot.plugins():
+            found = other_gazebo(robot.description, tag, sensor)
             if found is not None:
                 yield found
 

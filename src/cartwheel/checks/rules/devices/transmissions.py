@@ -39,12 +39,6 @@ def transmission_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
         yield from (each for each in notes if each.values["joint"] in robot.joint_names)
 
 
-@rule(devices_codes.TRANSMISSION_IGNORED)
-def transmission_ignored(subject: Subject) -> Iterator[Diagnostic]:
-    for robot in subject.robots:
-        yield from _notes(robot, devices_codes.TRANSMISSION_IGNORED)
-
-
 @rule(devices_codes.ROS2_CONTROL_JOINT_UNKNOWN)
 def ros2_control_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, joint in _driven_by(subject, "ros2_control"):

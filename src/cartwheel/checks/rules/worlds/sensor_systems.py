@@ -103,7 +103,7 @@ def _silent(subject: Subject, sensors: Sequence[Sensor], system: str, world: _Wo
             f" Before Ionic, a <world> with a plugin also needs {_DEFAULTS}, which gz-sim only "
             "loads by itself into a world without plugins."
         )
-    several = len(sensors) > 1
+    several = len(distinct) > 1
     return SENSOR_SYSTEM_MISSING.diagnostic(
         f"the sensor{'s' * several} {names} publish{'' if several else 'es'} nothing in gz-sim: "
         f'{where} does not load "{system}"',
@@ -239,12 +239,7 @@ def _plugins_in(found: Iterable[Node]) -> frozenset[str]:
 
 def _plugins_of(models: Iterable[RobotDescription]) -> frozenset[str]:
     """The short names of the plugins of models and of their sensors."""
-    return frozenset(
-        short_name(tag.filename)
-        for model in models
-        for tags in (model.plugins, *(s.plugins for link in model.links for s in link.sensors))
-        for tag in tags
-    )
+    return frozenset(short_name(tag.filename) for model in models for tag in model.all_plugins)
 
 
 def _mentioned(descriptions: Iterable[Path | None]) -> frozenset[str]:
