@@ -160,6 +160,32 @@ def test_what_is_missing_in_a_model_that_was_not_found_is_explained_by_its_inclu
     assert all(each.source == "file" for each in faults)
 
 
+@pytest.mark.parametrize("end", ["jinja", "erb", "in"])
+@pytest.mark.parametrize("alone", [False, True])
+def test_a_model_that_a_build_makes_from_a_template_is_no_fault_of_the_file(tmp_path, end, alone):
+    """Its author need not write the file."""
+    body = tmp_path / "models" / "body"
+    body.mkdir(parents=True)
+    (body / "model.config").write_text(
+        '<model><name>body</name><sdf version="1.6">body.sdf</sdf></model>'
+    )
+    (body / f"body.sdf.{end}").write_text("{{ body }}")
+    path = tmp_path / "models" / "robot.sdf"
+    camera = f'<link name="camera"><pose>0 0 1 0 0 0</pose>{MASS}</link>'
+    path.write_text(
+        '<sdf version="1.6"><model name="robot"><include><uri>model://body</uri></include>'
+        f"{'' if alone else camera}</model></sdf>"
+    )
+    verdict = try_robot(path, standing=0.5)
+    assert verdict.faults[0].test == "load"
+    assert {(each.code, each.source) for each in verdict.faults} == {(FILE_MISSING, "unknown")}
+    reason = verdict.faults[0].reason
+    assert reason is not None
+    assert reason.values["template"] == str(body / f"body.sdf.{end}")
+    (body / f"body.sdf.{end}").unlink()
+    assert {each.source for each in try_robot(path, standing=0.5).faults} == {"file"}
+
+
 SPAWNED = (
     '<launch><param name="robot_description" command="xacro $(find robot)/robot.urdf.xacro"/>'
     '<node name="s" pkg="gazebo_ros" type="spawn_model" args="-param robot_description"/></launch>'

@@ -24,6 +24,7 @@ from cartwheel.corpus.fall_causes import (
     cause_of_fall,
     falls_through,
     has_devices,
+    is_built_model,
     lost_wheel,
     need_not_stand,
 )
@@ -178,6 +179,8 @@ def _load_faults(
             yield Fault(test="load", reason=reason)
     for joint, dropped in dropped_joints(verdict, description):
         yield Fault(test="load", subject=joint, reason=dropped)
+    for built in filter(is_built_model, description.diagnostics):
+        yield Fault(test="load", subject=str(built.values["name"]), reason=built)
     if stopped is not None:
         yield Fault(test="load", subject=str(stopped.values["file"]), reason=stopped)
 

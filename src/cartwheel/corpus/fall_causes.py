@@ -85,7 +85,9 @@ def cause_of_fall(
     """
     if stand.floats:
         return coded(found, frozenset({robot.SINKS_IN_WATER}))
-    lost = next((each for each in found if is_body_lost(each, description)), None)
+    lost = next(
+        (each for each in found if is_body_lost(each, description) or is_built_model(each)), None
+    )
     if lost is not None or wheel is not None:
         return lost or wheel
     limp = _limp(found, description)
@@ -281,6 +283,13 @@ def is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
         each.code is files.LINK_RECONNECTED
         and not each.values.get("parent")
         and each.values.get("link") not in held
+    )
+
+
+def is_built_model(each: Diagnostic) -> bool:
+    """Whether a model is left out because a build makes its file from a template."""
+    return each.values.get("left_out") == "include" and bool(
+        each.values.get("kind") == "model" and each.values.get("template")
     )
 
 

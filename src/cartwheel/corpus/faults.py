@@ -86,6 +86,9 @@ class Fault:
             return "unknown"
         if self.test == "load" and _is_outside(self.reason):
             return "unknown"
+        if self.reason.values.get("template"):
+            # A build makes the file that is missing.
+            return "unknown"
         ours = {code.number for code in _OURS}
         return "unknown" if self.reason.values.get("cause") in ours else "file"
 

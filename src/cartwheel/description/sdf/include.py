@@ -22,6 +22,9 @@ from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.errors import DescriptionError, Origin
 
+_TEMPLATES = (".jinja", ".jinja2", ".j2", ".erb", ".em", ".in")
+"""Ends of the names of the files from which a build makes models."""
+
 
 @dataclass(frozen=True, slots=True)
 class Included:
@@ -179,10 +182,19 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
     if (folder / "model.sdf").is_file():
         return folder / "model.sdf"
     wanted = best[1] if best is not None and best[1] else "model.sdf"
+    template = _template(folder / wanted)
+    made = (
+        f' Build its package: the build makes the file from "{template.name}".' if template else ""
+    )
     raise NotThereError(
         f'the model folder for "{uri.text}" contains no {wanted}',
         code=files.FILE_MISSING,
         origin=uri.origin,
-        values={"kind": "model", "name": uri.text},
-        hint=f"The folder is {folder}.",
+        values={"kind": "model", "name": uri.text, "template": str(template or "")},
+        hint=f"The folder is {folder}.{made}",
     )
+
+
+def _template(file: Path) -> Path | None:
+    """The file from which a build makes another one."""
+    return next((each for end in _TEMPLATES if (each := Path(f"{file}{end}")).is_file()), None)

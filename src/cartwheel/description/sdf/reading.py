@@ -122,11 +122,12 @@ def _whole(node: Node, ctx: Context) -> Model:
         )
         if lacking is None:
             raise
+        why = f"{error.message}. {lacking.hint}"
         raise DescriptionError(
             lacking.message,
             code=lacking.code,
             origin=lacking.origin,
-            hint=f"For this reason, the model cannot be loaded: {error.message}.",
+            hint=f"For this reason, the model cannot be loaded: {why}".strip(),
             values={**lacking.values, "without": error.values.get("name")},
         ) from error
 
