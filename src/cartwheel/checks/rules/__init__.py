@@ -56,6 +56,7 @@ from cartwheel.checks.rules.robot import (
 from cartwheel.checks.rules.tags import ignored_by_gazebo, misplaced_tags
 from cartwheel.checks.rules.wheels import (
     fixed_base,
+    unpaired_wheels,
     wheel_axes,
     wheel_base,
     wheel_diameter,
@@ -88,6 +89,7 @@ RULES: tuple[Rule, ...] = tuple(
         light_roots,
         drive_joints,
         fixed_base,
+        unpaired_wheels,
         wheel_sides,
         wheel_speed,
         wheels_braked,
