@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+
 import numpy as np
 import pytest
 from tests.batch.warp_models import ARM, BALL
@@ -12,8 +14,9 @@ from cartwheel.batch import Batch
 from cartwheel.codes.world import WARP_DEVICE_UNUSABLE, WARP_UNSUPPORTED
 
 _ABSENT = "MuJoCo Warp is not installed. It has packages for Linux on x86-64 and ARM."
-warp = pytest.importorskip("warp", reason=_ABSENT)
-pytest.importorskip("mujoco_warp", reason=_ABSENT)
+# Imported only when the tests run: each process of a run of all tests imports this file, and the
+# package takes a sixth of the time of all imports.
+pytestmark = pytest.mark.skipif(find_spec("mujoco_warp") is None, reason=_ABSENT)
 
 ACT = {
     "/part2_cmr/cmd_vel": ["linear.x", "angular.z"],
@@ -28,6 +31,8 @@ by 5 m. About ten times those measured: single precision is 6e-8 of each number 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
+    import warp
+
     # Compiling takes a third less, and running somewhat more.
     warp.config.optimization_level = 0
     folder = tmp_path_factory.mktemp("models")

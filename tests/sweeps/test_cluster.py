@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -20,7 +21,10 @@ import cartwheel as cw
 from cartwheel.codes.wires import PACKAGE_MISSING
 from cartwheel.codes.world import CLUSTER_UNUSABLE, SWEEP_INVALID
 
-pytest.importorskip("ray", reason="Ray has no packages for this version of Python")
+# Imported only when the tests run, because each process of a run of all tests imports this file.
+pytestmark = pytest.mark.skipif(
+    find_spec("ray") is None, reason="Ray has no packages for this version of Python"
+)
 ROOT = Path(__file__).parents[2]
 ROBOTS = ROOT / "robots" / "rosbots_description"
 # Without it, Ray uses another interface for a cluster whose computers are all this one.
