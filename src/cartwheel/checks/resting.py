@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -13,7 +14,7 @@ from cartwheel.description.model import Capsule, Cylinder, Ellipsoid, Shape, Sph
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.ros_control.interfaces import ros2_control
 from cartwheel.errors import PluginError
-from cartwheel.geometry import Pose, matrix_from_quat
+from cartwheel.geometry import Pose, cross, matrix_from_quat
 
 _STEPS = 100
 """Maximum number of exchanged points; robots take about ten."""
@@ -154,7 +155,7 @@ def rest_of(robot: Robot, links: Iterable[str]) -> Rest | None:
     around = np.stack([np.cos(angles), np.sin(angles), np.full(3, 100.0)], axis=1)
     corners, holders = center + 10 * size * around, [False] * 3
     for _ in range(_STEPS):
-        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        normal = cross(corners[1] - corners[0], corners[2] - corners[0])
         normal *= np.sign(normal[2]) / (np.linalg.norm(normal) or 1.0)
         offset = float(normal @ corners[0])
         point = surfaces.lowest(normal)
@@ -178,10 +179,11 @@ def _exchanged(corners: Floats, i: int, point: Floats) -> Floats:
 
 def _inside(triangle: Floats, center: Floats) -> float:
     """Smallest barycentric coordinate of a point, from above: 0 or more if it is inside."""
-    a, b, c = triangle[:, :2]
-    sides = np.array([b - a, c - a]).T
-    area = float(np.linalg.det(sides))
-    if abs(area) < 1e-15:
-        return -np.inf
-    u, v = np.linalg.solve(sides, center[:2] - a)
+    (ax, ay), (bx, by), (cx, cy) = triangle[:, :2].tolist()
+    x, y = (center[:2]).tolist()
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    if not abs(area) >= 1e-15:
+        return -math.inf
+    u = ((x - ax) * (cy - ay) - (cx - ax) * (y - ay)) / area
+    v = ((bx - ax) * (y - ay) - (x - ax) * (by - ay)) / area
     return float(min(u, v, 1 - u - v))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, TypeVar
 
 from cartwheel.checks import nodes, plugin_tags
 from cartwheel.description.elements.node import Node
@@ -41,6 +42,7 @@ class Drive:
         return self.left + self.right
 
 
+_Value = TypeVar("_Value")
 Sides = tuple[tuple[str, ...], tuple[str, ...]]
 """Joints of the left and right wheels."""
 
@@ -84,6 +86,16 @@ class Robot:
         """Joints that the steering controllers turn."""
         self.idle: frozenset[str] = frozenset()
         """Joints for controllers that nothing commands or holds."""
+        self._known: dict[tuple[object, ...], tuple[object, Any]] = {}
+
+    def once(self, kind: str, of: object, compute: Callable[[], _Value]) -> _Value:
+        """What `compute` returned for this object the first time, for values of several rules."""
+        key = (kind, of if isinstance(of, tuple) else id(of))
+        if key not in self._known:
+            # With the object, which lives as long as its number stands for it.
+            self._known[key] = of, compute()
+        known: _Value = self._known[key][1]
+        return known
 
     @cached_property
     def collisions(self) -> dict[str, list[Solid]]:

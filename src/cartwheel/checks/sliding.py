@@ -24,10 +24,12 @@ from cartwheel.checks.wheels import (
 from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats
-from cartwheel.geometry import rotate
+from cartwheel.geometry import cross, rotate
 
 _ROUNDS = 200
 """Rounds of reweighting; the turn rate then changes by less than 1 %."""
+_SAME = 1e-12
+"""Change of a velocity in a round, m/s and rad/s, below which the next rounds change nothing."""
 _STILL = 1e-6
 """Sliding speed, m/s, below which a contact counts as not sliding."""
 _PARALLEL = 0.95
@@ -85,29 +87,27 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
     Returns:
         Velocity along x and y in m/s, and turn rate in rad/s, shape (3,).
     """
-    x, y, rim = np.array([(each.x, each.y, each.rim) for each in contacts]).T
+    x, y, rim, c, s = np.array([(e.x, e.y, e.rim, *e.direction) for e in contacts]).T
     loads = _loads(x, y, center)
-    c, s = np.array([each.direction for each in contacts]).T
-    # Sliding velocities along and across the direction, each as rows @ motion - driven.
-    axes = [(np.stack([a, b, b * x - a * y], 1), a * rim) for a, b in ((c, s), (-s, c))]
-    grips = [loads * np.array([each.friction[i] for each in contacts]) for i in (0, 1)]
-    most = [1.0 / np.maximum([each.slip[i] for each in contacts], _STILL**3) for i in (0, 1)]
-    strongest = np.maximum(np.maximum(*grips), _STILL)
+    # Sliding velocities along, then across the directions, as rows @ motion - driven.
+    along, across = np.stack([c, s, s * x - c * y]), np.stack([-s, c, c * x + s * y])
+    rows: Floats = np.hstack([along, across]).T
+    driven = np.hstack([c * rim, -s * rim])
+    grips: Floats = (loads * np.array([each.friction for each in contacts]).T).ravel()
+    most = 1.0 / np.maximum(np.array([each.slip for each in contacts]).T.ravel(), _STILL**3)
+    least = (_STILL * np.maximum(grips.reshape(2, -1).max(axis=0), _STILL)) ** 2
+    squares = grips**2
+    equations: Floats = np.column_stack([rows, driven])
     motion: Floats = np.zeros(3)
     for _ in range(_ROUNDS):
-        slides = [
-            grip * (rows @ motion - driven)
-            for grip, (rows, driven) in zip(grips, axes, strict=True)
-        ]
-        weights = 1.0 / np.sqrt(slides[0] ** 2 + slides[1] ** 2 + (_STILL * strongest) ** 2)
-        matrix: Floats = np.zeros((3, 3))
-        vector: Floats = np.zeros(3)
-        for grip, limit, (rows, driven) in zip(grips, most, axes, strict=True):
-            weight = np.minimum(grip**2 * weights, limit)
-            weighted: Floats = np.asarray(rows * weight[:, None]).T
-            matrix = matrix + weighted @ rows
-            vector = vector + weighted @ driven
-        motion = np.asarray(np.linalg.lstsq(matrix, vector, rcond=None)[0], dtype=np.float64)
+        slides: Floats = (grips * (rows @ motion - driven)).reshape(2, -1)
+        weights = np.tile(1.0 / np.sqrt((slides**2).sum(axis=0) + least), 2)
+        weighted: Floats = rows * np.minimum(squares * weights, most)[:, None]
+        sums: Floats = weighted.T @ equations
+        before = motion
+        motion = np.asarray(np.linalg.lstsq(sums[:, :3], sums[:, 3], rcond=None)[0], np.float64)
+        if np.abs(motion - before).max() < _SAME:
+            break
     return motion
 
 
@@ -444,14 +444,14 @@ def rolls_only_forward(robot: Robot, holder: Joint, driven: Sequence[Joint]) -> 
         between = np.subtract(
             wheel_place(robot, holder).position, wheel_place(robot, each).position
         )
-        ahead = np.cross(axle, between)[2]
+        ahead = cross(axle, between)[2]
         if same_body and abs(np.dot(axis, axle)) > _PARALLEL and abs(ahead) > _AHEAD:
             return True
     return False
 
 
 def _ahead(axle: Floats, place: Sequence[float] | Floats) -> float:
-    return float(np.cross(axle, place)[2])
+    return float(cross(axle, place)[2])
 
 
 def _friction(robot: Robot, link: str, axle: Floats) -> tuple[float, float]:

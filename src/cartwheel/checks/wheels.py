@@ -16,7 +16,7 @@ from cartwheel.dialects.gz.ackermann import GzAckermannDrive
 from cartwheel.dialects.gz.diff_drive import GzDiffDrive
 from cartwheel.dialects.gz.mecanum import GzMecanumDrive
 from cartwheel.dialects.tag_roles import WHEEL_ROLES
-from cartwheel.geometry import Pose, rotate
+from cartwheel.geometry import Pose, cross, rotate
 
 _DIRECTIONS = 32
 _LEVEL = np.array([1.0, 1.0, 0.0])
@@ -88,31 +88,43 @@ def wheel_tread(robot: Robot, joint: Joint) -> tuple[float, float, float]:
 
 def wheel_widths(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
     """Widths of a wheel in directions around its axis, m; None without geometry of this kind."""
-    cloud = _cloud(robot, joint, kind)
-    if cloud is None:
-        return None
-    # Half the width, not the radius: the wheel may be a millimetre off its axis.
-    sideways = _across(np.array(joint.axis.xyz))
-    return np.asarray(np.ptp(cloud @ sideways.T, axis=0))
+
+    def compute() -> Floats | None:
+        cloud = _cloud(robot, joint, kind)
+        if cloud is None:
+            return None
+        # Half the width, not the radius: the wheel may be a millimetre off its axis.
+        sideways = _across(np.array(joint.axis.xyz))
+        return np.asarray(np.ptp(cloud @ sideways.T, axis=0))
+
+    return robot.once(f"widths of {_name(robot, kind)}", joint, compute)
 
 
 def _cloud(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
     """Wheel vertices in the joint frame, shape (n, 3), m; None without geometry of this kind."""
-    here = wheel_place(robot, joint).inverse()
-    clouds = [
-        solid.placed(here @ robot.links[name].pose)
-        for name in wheel_links(robot, joint)
-        for solid in kind[name]
-    ]
-    return np.concatenate(clouds) if clouds else None
+
+    def compute() -> Floats | None:
+        here = wheel_place(robot, joint).inverse()
+        clouds = [
+            solid.placed(here @ robot.links[name].pose)
+            for name in wheel_links(robot, joint)
+            for solid in kind[name]
+        ]
+        return np.concatenate(clouds) if clouds else None
+
+    return robot.once(f"points of {_name(robot, kind)}", joint, compute)
+
+
+def _name(robot: Robot, kind: Mapping[str, list[Solid]]) -> str:
+    return "collisions" if kind is robot.collisions else "visuals"
 
 
 def _across(axis: Floats) -> Floats:
     """Unit vectors perpendicular to an axis, shape (n, 3)."""
-    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    first = cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     first /= np.linalg.norm(first)
     angles = np.linspace(0.0, np.pi, _DIRECTIONS, endpoint=False)[:, None]
-    return np.asarray(np.cos(angles) * first + np.sin(angles) * np.cross(axis, first))
+    return np.asarray(np.cos(angles) * first + np.sin(angles) * cross(axis, first))
 
 
 def is_across(robot: Robot, joint: Joint) -> bool:
@@ -312,10 +324,13 @@ def gz_wheels(robot: Robot) -> list[str]:
 
 def lowest(robot: Robot, *links: str) -> float | None:
     """Lowest point of the collisions of some links in the model frame, m."""
-    box = bounds(
-        [solid.placed(robot.links[link].pose) for link in links for solid in robot.collisions[link]]
-    )
-    return None if box is None else float(box[0][2])
+
+    def compute() -> float | None:
+        found = [(link, solid) for link in links for solid in robot.collisions[link]]
+        box = bounds([solid.placed(robot.links[link].pose) for link, solid in found])
+        return None if box is None else float(box[0][2])
+
+    return robot.once("lowest", links, compute)
 
 
 def wheel_place(robot: Robot, joint: Joint) -> Pose:

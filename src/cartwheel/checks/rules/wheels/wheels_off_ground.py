@@ -208,15 +208,19 @@ def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
 def _lifting_links(robot: Robot) -> Iterator[Diagnostic]:
     """Low links, but none with which the robot also stands on its wheels, because it tilts."""
     found = list(_low_links(robot))
-    standing = list(_standing(robot)) if found else []
+    standing = _standing(robot) if found else []
     if not standing or any(each.raised for each in standing):
         yield from found
         return
     yield from (each for each in found if each.values["link"] not in standing[0].rigid)
 
 
-def _standing(robot: Robot) -> Iterator[_Standing]:
+def _standing(robot: Robot) -> list[_Standing]:
     """How the wheels of each drive stand; none if it is unknown."""
+    return robot.once("standing", (), lambda: list(_found_standing(robot)))
+
+
+def _found_standing(robot: Robot) -> Iterator[_Standing]:
     held = any(joint.parent == "world" for joint in robot.description.joints)
     joints = wheel_joints(robot)
     names = {joint.name for joint in joints}
