@@ -1,15 +1,19 @@
 """What surfaces have of each other: directions of friction, turning on the spot, masks."""
 
 import copy
+import ctypes
 import math
+from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 
 from cartwheel.description.model import WorldDescription
+from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.world import build
 from cartwheel.world.entry import ModelEntry
+from cartwheel.world.pairs import Alignment
 
 G = 9.8
 MU1, MU2 = 0.6, 0.15
@@ -163,6 +167,31 @@ def test_directions_that_make_no_difference_cost_nothing(make):
     assert alignments(1, 1) == 0
     assert alignments(1000, 1000) == 0
     assert alignments(1000, 1) == 1
+
+
+def test_the_engine_s_own_functions_return_with_the_last_directions():
+    """Otherwise all later worlds of the process would find contacts more slowly."""
+    kinds = [int(kind) for kind in (mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_ELLIPSOID)]
+    count = int(mujoco.mjtGeom.mjGEOM_SDF) + 1
+    library = next(Path(mujoco.__file__).parent.glob("libmujoco*.so*"))
+    table = (ctypes.c_void_p * count**2).in_dll(ctypes.CDLL(str(library)), "mjCOLLISIONFUNC")
+    place = kinds[0] * count + kinds[1]
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><geom name="a" type="capsule" size="1 1"/>
+        <geom name="b" type="ellipsoid" size="1 1 1"/></worldbody></mujoco>"""
+    )
+    pair = Alignment(first="a", second="b", body=None, direction=(1.0, 0.0, 0.0), across=False)
+    own = table[place]
+    directions = [Directions(model, [pair]) for _ in range(2)]
+    assert table[place] != own
+    del directions[0]
+    assert table[place] != own
+    directions.clear()
+    assert table[place] == own
+    again = Directions(model, [pair])
+    assert table[place] != own
+    del again
+    assert table[place] == own
 
 
 TORSION = "<friction><ode><mu>1</mu><mu2>1</mu2></ode>{}</friction>"
