@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence, Set
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
@@ -24,6 +24,7 @@ from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.geometry import Pose, Vec3, rotate
 from cartwheel.graph import TWIST_STAMPED, TopicInfo
+from cartwheel.messages import from_dict
 from cartwheel.simulation.clock import NANOSECONDS
 
 VELOCITY, TURN = 0.2, 0.4
@@ -309,12 +310,15 @@ def _drive_on(
     linear = {"x": command.ahead, "y": command.left, "z": climb}
     twist = {"linear": linear, "angular": {"z": command.turn}}
     period = _period(world, topic)
+    stamped = topic.type == TWIST_STAMPED
+    # To make each message anew takes as long as to simulate the time between them.
+    said = from_dict(topic.type, {"twist": twist} if stamped else twist, strict=True)
     for _ in range(round(seconds / period)):
-        said: dict[str, Any] = twist
-        if topic.type == TWIST_STAMPED:
+        if stamped:
             now, rest = divmod(world.session.simulation.time_ns, NANOSECONDS)
-            said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
-        world.publish(topic.name, said)
+            stamp = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
+            said = from_dict(topic.type, stamp, strict=True)
+        world.graph.publish(topic.name, topic.type, said)
         world.run(period)
         if look is not None:
             look()

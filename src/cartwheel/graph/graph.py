@@ -339,9 +339,9 @@ class Graph:
             UnknownNameError: No such topic exists.
         """
         with self._lock:
-            live = {topic.name: topic for topic in self._live()}
-            topic = live.get(absolute_name(name))
-            if topic is None:
+            topic = self._topics.get(absolute_name(name))
+            if topic is None or not (topic.publishers or topic.subscriptions):
+                live = [each.name for each in self._live()]
                 raise UnknownNameError("topic", name, live, code=TOPIC_UNKNOWN)
             return topic.info()
 

@@ -187,9 +187,10 @@ def package_name(folder: Path) -> str | None:
     """The name in the folder's package.xml, or the folder's name if it contains only a manifest.xml
     of a package; otherwise None.
     """
-    for manifest in (folder / "package.xml", folder / "manifest.xml"):
+    # Each search looks at many folders, and paths as texts take a third of the time.
+    for manifest in (f"{folder}/package.xml", f"{folder}/manifest.xml"):
         try:
-            changed = manifest.stat().st_mtime_ns
+            changed = os.stat(manifest).st_mtime_ns  # noqa: PTH116
         except (OSError, ValueError):
             continue
         found = _declared_name(manifest, changed)
@@ -199,7 +200,8 @@ def package_name(folder: Path) -> str | None:
 
 
 @lru_cache(maxsize=4096)
-def _declared_name(manifest: Path, _changed: int) -> str | None:
+def _declared_name(path: str, _changed: int) -> str | None:
+    manifest = Path(path)
     if not is_file(manifest):
         return None
     try:
