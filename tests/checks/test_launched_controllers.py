@@ -197,7 +197,8 @@ def test_only_controllers_that_something_starts_are_checked(tmp_path, starts, pr
 def test_controllers_that_nothing_starts_do_not_move_a_robot(tmp_path, named, starts, case):
     gazebo, instruction, found = case
     spawner = '<node pkg="controller_manager" exec="spawner" args="base"/>'
-    world = '<include file="$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py"/>'
+    started = "ros_gz_sim)/launch/gz_sim" if named else "gazebo_ros)/launch/gazebo"
+    world = f'<include file="$(find-pkg-share {started}.launch.py"/>'
     launch = LAUNCH.replace(spawner, spawner.replace("base", starts) if starts else "")
     launch = launch.replace("</launch>", world + "</launch>") if gazebo else launch
     path = spawned(tmp_path, named=named, launch=launch)
