@@ -30,7 +30,7 @@ def rubbing(plugin: str, friction: float) -> str:
 
 
 @pytest.mark.parametrize(
-    ("p", "i", "reported"), [(3.0, 0.0, True), (12.0, 0.0, False), (3.0, 30.0, False)]
+    ("p", "i", "reported"), [(3.0, 0.0, True), (20.0, 0.0, False), (3.0, 30.0, False)]
 )
 @pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
 def test_a_gain_that_does_not_overcome_friction_is_reported(tmp_path, p, i, reported, gz):
@@ -52,15 +52,16 @@ def test_a_gain_that_does_not_overcome_friction_is_reported(tmp_path, p, i, repo
 
 @pytest.mark.parametrize(("p", "axis", "reported"), [
     (10.0, "0 0 1", True), (10.0, "0 0 -1", True), (10.0, "1 0 0", False),
-    # It sags by 0.22 m, or by 0.016 m.
-    (90.0, "0 0 1", True), (90.0, "0 0 -1", True), (1200.0, "0 0 1", False),
+    # It sags by 0.22 m, by 0.016 m, or by 0.005 m.
+    (90.0, "0 0 1", True), (90.0, "0 0 -1", True), (1200.0, "0 0 1", True),
+    (4000.0, "0 0 1", False),
 ])  # fmt: skip
 @pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
 def test_a_gain_that_does_not_hold_a_weight_within_the_limits_is_reported(
     tmp_path, p, axis, reported, gz
 ):
     """A weight of 2 kg on a slide of 1 m: a gain of 20 N/m would just hold it at its end, and one
-    of 980 N/m 2 cm below its target.
+    of 1960 N/m 1 cm below its target.
     """
     limit = 'lower="-0.5" upper="0.5" effort="100" velocity="10"'
     slide = beam("beam", "world", axis=axis, limit=limit, kind="prismatic")
@@ -75,7 +76,7 @@ def test_a_gain_that_does_not_hold_a_weight_within_the_limits_is_reported(
     assert [each.values["joint"] for each in found] == ["beam_joint"] * reported
     faults = try_robot(path, standing=1.0, controllers=files).faults
     assert [each.code for each in faults] == [CONTROLLER_GAIN_TOO_LOW] * reported
-    if p == 90.0:
+    if reported and p >= 90.0:
         assert abs(faults[0].reason.values["error"]) == pytest.approx(2.0 * 9.8 / p, rel=0.01)
 
 
@@ -98,10 +99,10 @@ def test_a_slide_between_equal_limits_is_held(tmp_path, upper):
         (40.0, ("0 -1.5708 0", 3), False),
         # It sags from near the horizontal, or from nearer the top.
         (5.0, ("0 0.2 0", 3), True),
-        (80.0, ("0 0.2 0", 3), False),
+        (120.0, ("0 0.2 0", 3), False),
         (15.0, ("0 -0.7 0", 3), True),
         # It hangs.
-        (5.0, ("0 1.5708 0", 3), False),
+        (15.0, ("0 1.5708 0", 3), False),
         # Gravity does not turn it about an upright axis.
         (5.0, ("1.5708 0 0", 3), False),
         # It cannot reach the upright position, but sags to a limit.
@@ -136,7 +137,7 @@ def test_a_gain_that_does_not_hold_a_load_up_is_reported(tmp_path, pose, p, repo
     assert codes == [CONTROLLER_GAIN_TOO_LOW] * reported
 
 
-@pytest.mark.parametrize(("p", "reported"), [(1.0, True), (5.0, False)])
+@pytest.mark.parametrize(("p", "reported"), [(1.0, True), (5.0, True), (15.0, False)])
 @pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
 def test_a_gain_that_hardly_lifts_what_hangs_is_reported(tmp_path, p, reported, gz):
     """Gravity pulls 2 kg at 0.5 m back with 9.8 N m/rad: the joint moves to p / (p + 9.8)."""
@@ -168,14 +169,14 @@ def upright(dynamics: str = '<dynamics damping="2"/>') -> str:
 
 
 @pytest.mark.parametrize(
-    ("p", "friction", "reported"), [(15.0, 0.0, True), (25.0, 0.0, False), (15.0, 1.5, False)]
+    ("p", "friction", "reported"), [(28.0, 0.0, True), (35.0, 0.0, False), (28.0, 1.5, True)]
 )
 @pytest.mark.parametrize("gz", [True, False], ids=["plugin", "controller"])
 def test_a_gain_that_lets_a_load_tip_beyond_its_target_is_reported(
     *, tmp_path, p, friction, reported, gz
 ):
     """Gravity pushes 2 kg 0.5 m above the joint with 9.8 N m/rad: 0.2 rad becomes 0.2 p / (p -
-    9.8), less the friction's part. The other gain is well above the least.
+    9.8), also with friction. Up to 0.3 rad, this is accepted.
     """
     path = tmp_path / "arm.urdf"
     plugin = GZ.format(p=p, i=0.0) if gz else ROS1

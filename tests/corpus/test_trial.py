@@ -713,17 +713,18 @@ def test_a_robot_without_controllers_does_not_move_with_any_hardware(tried):
 
 
 @pytest.mark.parametrize(
-    ("kind", "gains", "error"),
+    ("kind", "gains", "error", "codes"),
     [
         # Its weight over the gain.
-        ("position", {"pos_kp": 600, "pos_ki": 1, "pos_kd": 10}, 9.8 / 600),
+        ("position", {"pos_kp": 600, "pos_ki": 1, "pos_kd": 10}, 9.8 / 600, ["CW487"]),
         # The integral has reduced it by a half to a third while it is measured.
-        ("velocity", {"vel_kp": 10, "vel_ki": 10, "vel_kd": 0.1}, 0.15),
+        ("velocity", {"vel_kp": 10, "vel_ki": 10, "vel_kd": 0.1}, 0.15, []),
     ],
 )
-def test_an_error_that_follows_from_the_load_and_the_gains_of_the_hardware_is_none(
-    tmp_path, tried, kind, gains, error
+def test_an_error_that_follows_from_the_load_and_the_gains_of_the_hardware(
+    *, tmp_path, tried, kind, gains, error, codes
 ):
+    """A large error of a position is a fault of the file."""
     path = tmp_path / "lift.yaml"
     path.write_text(
         "controller_manager:\n  ros__parameters:\n    lift:\n"
@@ -736,12 +737,12 @@ def test_an_error_that_follows_from_the_load_and_the_gains_of_the_hardware_is_no
     wanted, got = (one.target, one.reached) if kind == "position" else (one.commanded, one.measured)
     assert wanted - got == pytest.approx(error, rel=0.1)
     assert error <= one.sag * 1.01
-    assert verdict.good
+    assert [fault.code.number for fault in verdict.faults] == codes
 
 
-@pytest.mark.parametrize("gain", [3.0, 12.0])
-def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tried, gain):
-    """Unless the joint does not move at all, because 0.2 rad times the gain is less."""
+@pytest.mark.parametrize("gain", [3.0, 12.0, 20.0])
+def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin(tried, gain):
+    """A large one is a fault of the file: 0.1 rad times the gain is less than the friction."""
     plugin = (
         '<gazebo><plugin name="p" filename="gz-sim-joint-position-controller-system">'
         f"<joint_name>shoulder</joint_name><p_gain>{gain}</p_gain></plugin></gazebo>"
@@ -752,9 +753,9 @@ def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tr
     verdict = tried(rubbing.split("<transmission")[0], plugin)
     (reach,) = verdict.reaches
     # Gravity, 0.98 N m sin(0.2), is not what holds it.
-    assert abs(reach.error) > 0.1
     assert reach.sag > 1.5 / gain
-    assert reach.moved == verdict.good == (gain * 0.2 > 1.5)
+    assert reach.moved == (gain * 0.2 > 1.5)
+    assert verdict.good == (abs(reach.error) < 0.1) == (gain * 0.1 > 1.5)
     if not verdict.good:
         (fault,) = verdict.faults
         assert (fault.test, fault.code, fault.source) == ("reach", CONTROLLER_GAIN_TOO_LOW, "file")

@@ -26,9 +26,11 @@ _UPRIGHT = math.pi / 3
 """Angle from the upright position within which a joint starts that has to hold its load up, rad."""
 _HANGING = math.pi / 6
 """Angle from where a load hangs within which gravity acts like a spring, rad."""
-_LIFTS = 0.2
+_ERROR = 0.5
+"""Part of this distance by which a joint may miss its target."""
+_LIFTS = 1.0 - _ERROR
 """Smallest part of its target to which a joint has to move."""
-_OVERSHOOTS = 2.0
+_OVERSHOOTS = 1.0 + _ERROR
 """Multiple of its target beyond which a joint does not follow."""
 SLOW = 5.0
 """Time after which an integral counts as too slow, s."""
@@ -115,8 +117,8 @@ def following_gain(robot: Robot, joint: Joint) -> float:
     N m/rad.
 
     At a small angle a from the upright position, gravity pushes the load further with C a (see
-    `upright_stiffness`), so that a gain p holds a target t at t p / (p - C). Friction F, against
-    the motion, lets it stop at (t p - F) / (p - C).
+    `upright_stiffness`), so that a gain p holds a target t at t p / (p - C). Friction may let it
+    stop earlier, but a joint that swings up to there stays there.
 
     Args:
         robot: The robot.
@@ -129,8 +131,7 @@ def following_gain(robot: Robot, joint: Joint) -> float:
     found = _pendulum(robot, joint)
     if found is None or abs(found[0]) > _HANGING:
         return stiffness
-    friction = joint.axis.friction / ANGLE
-    return max(stiffness, (_OVERSHOOTS * stiffness - friction) / (_OVERSHOOTS - 1.0))
+    return stiffness * _OVERSHOOTS / (_OVERSHOOTS - 1.0)
 
 
 def _pendulum(robot: Robot, joint: Joint) -> tuple[float, float] | None:
@@ -198,7 +199,7 @@ class _Stated(NamedTuple):
 def _is_stuck(stated: _Stated) -> Iterator[Diagnostic]:
     """The finding that a gain does not overcome a joint's friction."""
     joint = stated.joint
-    way = LENGTH if joint.type == "prismatic" else ANGLE
+    way = _ERROR * (LENGTH if joint.type == "prismatic" else ANGLE)
     effort, friction = stated.gain * way, joint.axis.friction
     if not 0.0 < effort < friction:
         return
@@ -227,16 +228,16 @@ def _cannot_hold(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
 
 
 def _sags(robot: Robot, stated: _Stated) -> Iterator[Diagnostic]:
-    """The finding that a joint sags from where it starts, further than the usual way of a test."""
+    """The finding that a joint sags far from where it starts."""
     joint = stated.joint
     turns = _pendulum(robot, joint)
     if turns is not None:
         left, stiffness = turns
-        way, towards, load = ANGLE, -left, stiffness * math.sin(abs(left))
+        way, towards, load = _ERROR * ANGLE, -left, stiffness * math.sin(abs(left))
         # Between both angles, gravity's torque is larger than at one of them.
         least = min(load, stiffness * math.sin(abs(left) + way))
     else:
-        way, towards = LENGTH, _pull(robot, joint)
+        way, towards = _ERROR * LENGTH, _pull(robot, joint)
         least = load = abs(towards)
     held = stated.gain * way + joint.axis.friction >= least or _room(joint, towards) <= way
     if held or joint.mimic is not None:

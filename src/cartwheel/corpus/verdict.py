@@ -28,8 +28,6 @@ MOVED = 0.1
 """Smallest part of the commanded way or speed at which a joint moves."""
 ANGLE, LENGTH = 0.1, 0.01
 """rad and m; maximum error of a joint position: a PID with effort output yields to gravity."""
-_SAGGED = 2.0
-"""The same relative to these, if the controller's own gains explain it."""
 SHORT = 0.5
 """The same relative to the way, which limits shorten."""
 
@@ -173,10 +171,12 @@ class Reach:
 
     @property
     def arrived(self) -> bool:
-        """Whether it moved, with a small error, or a moderate one that follows from gravity and the
-        gains.
+        """Whether it moved, with a small error.
+
+        If limits shorten the way, this is a larger part of it where gravity and the gains explain
+        the error.
         """
-        return self._follows and abs(self.error) <= _SAGGED * self._longest
+        return self._follows and abs(self.error) <= self._longest
 
     @property
     def sags(self) -> bool:
