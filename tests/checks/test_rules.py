@@ -99,11 +99,11 @@ def test_what_follows_from_a_fault_is_not_reported_as_well(bench, spoil):
     assert rules((box, box.replace("<box size=", "<box sizes="))) == ["tag-missing"]
 
 
-def test_a_robot_that_faces_the_other_way_is_right_in_all(bench, spoil):
+def test_a_robot_with_swapped_wheels_and_reversed_axes_drives_backwards(bench, spoil):
     swapped = [("<leftJoint>left", "<leftJoint>right"), ("<rightJoint>right", "<rightJoint>left")]
     turned = [('xyz="0 1 0"', 'xyz="0 -1 0"')] * 2
     found = {f.code.name for f in bench.report(spoil(*swapped, *turned)).findings}
-    assert not found & {"wheels-swapped", "wheel-axis-misaligned"}
+    assert found >= {"wheels-swapped", "wheel-axis-misaligned"}
     assert bench.find(spoil(*swapped), "wheels-swapped")
     assert len(bench.find(spoil(*turned), "wheel-axis-misaligned")) == 2
 

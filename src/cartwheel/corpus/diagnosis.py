@@ -300,6 +300,9 @@ def _measured(
 
     def explaining(test: Test, subject: str) -> list[Diagnostic]:
         found = _explaining((*said, *findings()), verdict, description, (test, subject))
+        if fallen or flywheel((*said, *findings()), description):
+            # On what a robot lies that fell or rocks is no reason.
+            found = [each for each in found if "unloaded" not in each.values]
         # A robot without its wheels rests on what it drags.
         return found if wheel is None else [e for e in found if e.code not in _WITHOUT_WHEELS]
 

@@ -128,7 +128,7 @@ def _unloaded(
         message=f"the driven wheels carry {carried / weight:.0%} of the weight, because "
         f'"{name}" carries {others[name] / weight:.0%} of it, so the wheels hardly push the robot',
         severity="info",
-        values={"link": name, "joint": "", "part": others[name] / weight},
+        values={"link": name, "joint": "", "part": others[name] / weight, "unloaded": True},
         origin=robot.links[name].origin if name in robot.links else robot.description.origin,
         hint="Place the centre of mass nearer to the driven wheels, or lift this part.",
     )
