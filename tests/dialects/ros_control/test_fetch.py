@@ -317,3 +317,4 @@ def test_its_controllers_are_known_to_checks(tmp_path):
     (unknown,) = coded(findings, devices.CONTROLLER_TYPE_UNKNOWN)
     assert unknown.values["type"] == "robot_controllers/PointHeadController"
     assert not coded(findings, robots.JOINTS_UNDRIVEN)
+    assert not coded(findings, devices.CONTROL_WITHOUT_JOINTS)

@@ -11,6 +11,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject, is_known
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element
+from cartwheel.dialects.catalogue import OF_FETCH, plugin_named
 from cartwheel.dialects.ros_control.interfaces import ros2_control, transmissions
 from cartwheel.dialects.stopping import CONSEQUENCE
 from cartwheel.errors import Code, Diagnostic
@@ -57,6 +58,9 @@ def control_without_joints(subject: Subject) -> Iterator[Diagnostic]:
             else:
                 joints = transmissions(robot.description, several=True)[0]
             for tag in managers(robot, ros2=ros2) if not joints else ():
+                if plugin_named(tag.filename) is plugin_named(OF_FETCH):
+                    # It commands all joints.
+                    continue
                 yield devices_codes.CONTROL_WITHOUT_JOINTS.diagnostic(
                     f"{what} a joint, so controllers have no joint to command",
                     origin=tag.origin,
