@@ -12,6 +12,44 @@ AXIS = '<axis xyz="0 0 1"/>'
 
 @pytest.mark.wording
 @pytest.mark.parametrize(
+    ("axes", "height", "ways", "advice"),
+    [
+        (1, 0.0, (1, 1), "Swap the two names."),
+        (-1, 0.0, (1, 1), "Swap the two names. Reverse both axes."),
+        # The multipliers make up for the axes.
+        (-1, 0.0, (-1, -1), "Swap the two names."),
+        # The direction of the axle is unknown.
+        (1, 0.1, (1, 1), "Swap the two names."),
+    ],
+)
+def test_axes_are_only_reversed_if_the_robot_drives_backwards(
+    tmp_path, *, axes, height, ways, advice
+):
+    robot = cart().replace(AXIS, AXIS.replace("1", f"{axes}"))
+    robot = robot.replace("0.1 -0.02", f"0.1 {height - 0.02:g}", 1)
+    control = controlled(tmp_path, swapped=True)
+    sides = zip(("left", "right"), ways, strict=True)
+    file = tmp_path / "base.yaml"
+    more = "".join(f"    {side}_wheel_radius_multiplier: {way}.0\n" for side, way in sides)
+    file.write_text(file.read_text() + more)
+    findings = cartwheel.check(written(tmp_path, robot, control)).findings
+    (finding,) = [each for each in findings if each.code is WHEELS_SWAPPED]
+    assert finding.hint == advice
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize("axis", [1, -1])
+def test_wheels_beside_each_other_along_x_need_only_other_names(tmp_path, axis):
+    turned = cart().replace('xyz="0 0.1 ', 'xyz="0.1 0 ').replace('xyz="0 -0.1 ', 'xyz="-0.1 0 ')
+    turned = turned.replace('rpy="-1.5708 0 0"', 'rpy="0 1.5708 0"')
+    turned = turned.replace(AXIS, AXIS.replace("1", f"{axis}"))
+    path = written(tmp_path, turned, controlled(tmp_path, swapped=axis > 0))
+    (finding,) = [e for e in cartwheel.check(path).findings if e.code is WHEELS_SWAPPED]
+    assert finding.hint == "Swap the two names."
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize(
     ("left", "right", "said", "ahead", "turn"),
     [
         # Both axes point to the left, so only the sides are wrong.

@@ -30,6 +30,7 @@ from cartwheel.dialects.classic.drives.diff_drive import LEGACY_SWAPPED
 from cartwheel.errors import Diagnostic, Where
 
 _SWAP = "Swap the two names."
+_BOTH = ", and both axes point to the right"
 
 
 @rule(robot_codes.WHEELS_SWAPPED)
@@ -81,11 +82,12 @@ def _judged(
     why = _swapped(robot, left, right)
     if why:
         where.setdefault("hint", _SWAP)
-        if all(sense < -CAMBER for sense in axis_senses(robot, left, right)):
+        consequence = _consequence(robot, left, right, ways)
+        if consequence.startswith(_BOTH):
             where["hint"] += " Reverse both axes."
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'{owner}the left wheel joint "{left.name}" is to the right of '
-            f'"{right.name}", {why}{_consequence(robot, left, right, ways)}',
+            f'"{right.name}", {why}{consequence}',
             values={"left": left.name, "right": right.name},
             **where,
         )
@@ -103,7 +105,7 @@ def _consequence(robot: Robot, left: Joint, right: Joint, ways: tuple[float, flo
         return ", so the robot turns in the wrong direction"
     if not rolled or max(rolled) > -CAMBER:
         return ""
-    both = ", and both axes point to the right" if max(senses) < -CAMBER else ""
+    both = _BOTH if max(senses) < -CAMBER else ""
     return f"{both}, so the robot drives backwards"
 
 
