@@ -1,5 +1,7 @@
 """Robots that come down, or fall over, when their joints move."""
 
+import re
+
 import pytest
 
 from cartwheel.codes.robot import UNBALANCED
@@ -41,6 +43,66 @@ def test_an_arm_that_nothing_fixes_to_the_world_may_tip_over(tmp_path, wide, mor
     assert {(each.test, each.code, each.source) for each in verdict.faults} == (
         {("stand", UNBALANCED, "file")} if falls else set()
     )
+
+
+@pytest.mark.parametrize("named", ["collision", "visual"])
+def test_a_robot_may_stand_on_a_missing_mesh(tmp_path, named):
+    mesh = f'<{named}><geometry><mesh filename="package://nowhere/foot.stl"/></geometry></{named}>'
+    base = LINK.format(name="base", z=0.05, mass=2, size="0.1 0.3 0.1")
+    base = base.replace("</link>", f"{mesh}</link>")
+    joint = MOVED.format(name="arm", at="0 0 0.1")
+    verdict = tried(tmp_path, base, ARM, joint, MOTOR.format(name="arm"))
+    assert verdict.reaches
+    assert any(each.code is UNBALANCED for each in verdict.faults) == (named == "visual")
+
+
+def test_a_robot_without_weight_and_collisions_turns_with_its_arm(tmp_path):
+    base = LINK.format(name="base", z=0.05, mass=2, size="1 1 1")
+    light = "".join(
+        f'<gazebo reference="{name}"><gravity>false</gravity></gazebo>' for name in ("base", "arm")
+    )
+    parts = [re.sub("<collision>.*</collision>", "", each) for each in (base, ARM)]
+    joint = MOVED.format(name="arm", at="0 0 0.1")
+    verdict = tried(tmp_path, *parts, joint, MOTOR.format(name="arm"), light)
+    assert verdict.reaches
+    assert verdict.stand.state == "yes"
+    assert not any(each.code is UNBALANCED for each in verdict.faults)
+
+
+ROTOR = (
+    '<link name="{name}"><inertial><mass value="0.01"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
+    '</inertial></link><joint name="{name}_joint" type="continuous"><parent link="base"/>'
+    '<child link="{name}"/><origin xyz="{x} {y} 0.15"/><axis xyz="0 0 1"/></joint><gazebo>'
+    '<plugin name="{name}" filename="gz-sim-multicopter-motor-model-system">'
+    "<jointName>{name}_joint</jointName><linkName>{name}</linkName><motorNumber>{number}"
+    "</motorNumber><turningDirection>{way}</turningDirection><maxRotVelocity>800</maxRotVelocity>"
+    "<motorConstant>{thrust}</motorConstant><momentConstant>0.016</momentConstant>"
+    "<commandSubTopic>motors</commandSubTopic><motorType>velocity</motorType></plugin></gazebo>"
+)
+
+
+def test_an_aircraft_that_tilted_in_the_air_does_not_tip_over_on_the_ground(tmp_path):
+    """Its joints move after the flight, from standstill."""
+    base = LINK.format(name="base", z=0.05, mass=1, size="0.3 0.3 0.1")
+    camera = LINK.format(name="camera", z=0, mass=0.1, size="0.05 0.05 0.05")
+    camera = camera.replace('"0.1" i', '"0.001" i').replace('izz="0.1"', 'izz="0.001"')
+    joint = MOVED.format(name="camera", at="0 0 0.13")
+    motor = MOTOR.format(name="camera").replace(">2000<", ">20<").replace(">100<", ">2<")
+    rotors = [
+        ROTOR.format(name=f"rotor_{n}", number=n, x=x, y=y, way=way, thrust=thrust)
+        for n, (x, y, way, thrust) in enumerate(
+            [
+                (0.2, 0.2, "ccw", 1e-5),
+                (-0.2, -0.2, "ccw", 8.5e-6),
+                (0.2, -0.2, "cw", 8.5e-6),
+                (-0.2, 0.2, "cw", 8.5e-6),
+            ]
+        )
+    ]
+    verdict = tried(tmp_path, base, camera, joint, motor, *rotors)
+    assert verdict.flights
+    assert verdict.reaches
+    assert not verdict.faults
 
 
 def test_a_robot_may_fall_when_its_legs_move(tmp_path):

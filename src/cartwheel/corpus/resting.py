@@ -22,6 +22,7 @@ from cartwheel.codes import devices
 from cartwheel.codes import robot as robot_codes
 from cartwheel.corpus.loads import held_by
 from cartwheel.corpus.motion import angle_between, commanded_speeds
+from cartwheel.corpus.movers import LEFT_OUT
 from cartwheel.corpus.verdict import TILTED, Drive
 from cartwheel.description.model import Joint
 from cartwheel.dialects.ros_control.controller import Controller
@@ -151,7 +152,7 @@ def drives_apart(robot: Robot, drives: Sequence[Drive]) -> Iterator[Diagnostic]:
 
 
 def toppled(
-    model: Model, robot: Robot, commanded: Iterable[str], upright: Pose
+    model: Model, robot: Robot, commanded: Iterable[str], upright: Pose | None
 ) -> Iterator[Diagnostic]:
     """The robot, if it stands on its base, but fell when the joints on the base moved.
 
@@ -159,14 +160,16 @@ def toppled(
         model: The robot in the world, after the motion.
         robot: Its description.
         commanded: The joints that were moved.
-        upright: The pose of its root link before.
+        upright: The pose of its root link at rest; None if it did not stand.
     """
     heights = {name: low for name in robot.links if (low := lowest(robot, name)) is not None}
     ground = min(heights.values(), default=0.0) + _FLAT * robot.size
     standing = [name for name, height in heights.items() if height <= ground]
     moved = set(commanded)
-    if not robot.is_placed or robot.uncovered or moved & robot.carrying(standing):
-        # Those are legs, or may be.
+    if upright is None or not moved or not standing or moved & robot.carrying(standing):
+        # Those are legs.
+        return
+    if any(_is_lost(each) for each in robot.description.diagnostics):
         return
     tilt = angle_between(*(rotate(pose.orientation, _UP) for pose in (upright, model.pose)))
     if tilt <= TILTED:
@@ -188,6 +191,11 @@ def toppled(
         origin=robot.description.origin,
         hint=hint,
     )
+
+
+def _is_lost(each: Diagnostic) -> bool:
+    """Whether it is about a missing shape or part, on which the robot may stand in Gazebo."""
+    return each.code in LEFT_OUT or each.values.get("left_out") == "collision"
 
 
 def gave_way(

@@ -51,14 +51,11 @@ from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.gazebo_only import with_own_plugins
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.selection import (
-    Selection,
-    selection,
-    with_published_control,
-)
+from cartwheel.dialects.ros_control.selection import Selection, selection, with_published_control
 from cartwheel.dialects.ros_control.suggestion import is_controlled
 from cartwheel.dialects.world_plugins import BUILT_IN, WITHOUT_EFFECT, refused
 from cartwheel.errors import CartwheelError, Diagnostic, Origin
+from cartwheel.geometry import Pose
 
 STANDING = 10.0
 """Simulation time without commands, s."""
@@ -271,6 +268,7 @@ def _moved(
     before = motion.positions(world, model)
     body = Robot(robot, None)
     stood = motion.stand(world, model, robot, standing)
+    upright = model.pose if stood.state == "yes" else None
     started = controllers_of(world).started
     body.controlled = controlled_sides(body, started)
     given_up: list[Diagnostic] = []
@@ -297,7 +295,7 @@ def _moved(
     if _lies(verdict):
         return
     moved = verdict
-    for moved in _joints_moved(verdict, world, model, robot, held):
+    for moved in _joints_moved(verdict, world, model, robot, held=held, upright=upright):
         yield moved
     pushes = (*thrusts(world, model, robot), *bursts(world, model, robot))
     yield replace(moved, spins=(*moved.spins, *pushes))
@@ -338,15 +336,18 @@ def _driven(
 
 
 def _joints_moved(
-    verdict: Verdict, world: World, model: Model, robot: RobotDescription, held: set[str]
+    verdict: Verdict,
+    world: World,
+    model: Model,
+    robot: RobotDescription,
+    *,
+    held: set[str],
+    upright: Pose | None,
 ) -> Iterator[Verdict]:
     started = controllers_of(world).started
     gains = weak_gains(robot, started)
-    upright = model.pose
     reached = [*motion.reaches(world, model, robot, started, gains)]
-    stood = verdict.stand is not None and verdict.stand.state == "yes"
-    names = [each.joint for each in reached]
-    fell = [*toppled(model, Robot(robot, None), names, upright)] if stood else []
+    fell = [*toppled(model, Robot(robot, None), [each.joint for each in reached], upright)]
     reached += posed(world, model, robot)
     verdict = replace(verdict, reaches=tuple(reached))
     late = {each.joint for each in reached if not each.arrived}
@@ -356,8 +357,7 @@ def _joints_moved(
         *sagged(robot, started, gains, reached),
         *too_weak(robot, started, gains, sorted(late)),
     )
-    seen = dict.fromkeys((*verdict.observed, *fell, *springs))
-    verdict = replace(verdict, observed=tuple(seen))
+    verdict = replace(verdict, observed=tuple(dict.fromkeys((*verdict.observed, *fell, *springs))))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
 
@@ -390,7 +390,7 @@ def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]
         model = world.spawn(hung, name=name_in(world, robot), z=HIGH, controllers=controllers)
         # The controllers start with the simulation.
         world.run(LISTENING)
-        *_, moved = _joints_moved(verdict, world, model, robot, set())
+        *_, moved = _joints_moved(verdict, world, model, robot, held=set(), upright=None)
     return moved
 
 
