@@ -2,6 +2,7 @@
 
 import pytest
 
+from cartwheel.checks import subject
 from cartwheel.checks.checking import check
 from cartwheel.codes.devices import SENSOR_SYSTEM_MISSING
 from cartwheel.corpus import try_robot
@@ -192,3 +193,24 @@ def test_a_sensor_without_its_system_is_a_fault_of_the_files(tmp_path, arena, fa
     verdict = try_robot(package(tmp_path, arena=arena, gz=OWN.format("arena")), standing=0.5)
     assert [each.test for each in verdict.faults] == faults
     assert verdict.outcome == ("file" if faults else "good")
+
+
+@pytest.mark.parametrize(("count", "found"), [(3, True), (10**6, False)])
+def test_a_limited_number_of_folders_is_searched_once(tmp_path, monkeypatch, count, found):
+    """A file outside of a repository may be in a folder with any number of them."""
+    path = tmp_path / "world.sdf"
+    sensor = SENSOR.format(kind="camera")
+    path.write_text(
+        f'<sdf version="1.9"><world name="arena">{PHYSICS}<model name="eye"><link name="base">'
+        f"{BODY}{sensor}</link></model></world></sdf>"
+    )
+    visited = []
+
+    def folders(folder):
+        for number in range(count):
+            visited.append(number)
+            yield folder / str(number), []
+
+    monkeypatch.setattr(subject, "source_folders", folders)
+    assert bool(missing(path)) == found
+    assert len(visited) <= min(count, subject.MOST_FOLDERS)

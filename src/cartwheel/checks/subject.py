@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,6 +16,7 @@ from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.elements.simulator import simulator_of
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches import LaunchUse, OwnLaunches, chosen
 from cartwheel.description.model import RobotDescription, Simulator, WorldDescription
 from cartwheel.dialects.ros_control.selection import Selection
@@ -24,6 +26,8 @@ ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})
 """Codes for files, models and packages that do not exist locally."""
 GAZEBO_STEP = 0.001
 """Default time step, s."""
+MOST_FOLDERS = 10_000
+"""Maximum number of folders that are searched for worlds and settings."""
 
 
 @dataclass(kw_only=True)
@@ -93,6 +97,14 @@ class Subject:
     def own_launches(self) -> OwnLaunches:
         """The launch files of the description's author."""
         return self.find_launches()
+
+    @cached_property
+    def own_folders(self) -> Sequence[tuple[Path, list[str]]]:
+        """The folders of the description's author, each with the names of its files.
+
+        There are at most `MOST_FOLDERS`: a file outside of a repository may be anywhere.
+        """
+        return list(itertools.islice(source_folders(self.own_launches.folder), MOST_FOLDERS))
 
     @cached_property
     def macros(self) -> frozenset[str]:

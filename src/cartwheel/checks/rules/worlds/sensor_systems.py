@@ -14,12 +14,11 @@ from pathlib import Path
 from cartwheel.checks import nodes
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.sensor_ranges import sensors_of
-from cartwheel.checks.subject import Subject
+from cartwheel.checks.subject import MOST_FOLDERS, Subject
 from cartwheel.codes.devices import SENSOR_SYSTEM_MISSING
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.regular_files import read_start
-from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches import LaunchUse
 from cartwheel.description.loading import load_world
 from cartwheel.description.model import RobotDescription, Sensor, WorldDescription
@@ -202,7 +201,7 @@ def _files(subject: Subject, world: str) -> Iterator[Path]:
     if path.is_absolute():
         yield path
         return
-    for folder, names in source_folders(subject.own_launches.folder):
+    for folder, names in subject.own_folders:
         if path.name in names and (folder / path.name).match(world):
             yield folder / path.name
 
@@ -255,7 +254,10 @@ def _mentioned(descriptions: Iterable[Path | None]) -> frozenset[str]:
 
 
 def _has_own_defaults(subject: Subject) -> bool:
-    """Whether the author of a robot may have default systems other than gz-sim's."""
+    """Whether the author of a robot may have default systems other than gz-sim's.
+
+    It may be in one of the folders that are not searched, if there are too many.
+    """
     own = subject.own_launches
     for file in {each.file for each in own.launches}:
         try:
@@ -263,5 +265,7 @@ def _has_own_defaults(subject: Subject) -> bool:
                 return True
         except OSError:
             continue
-    folders = source_folders(own.folder)
-    return any(name.endswith(_CONFIG) for _, names in folders for name in names)
+    folders = subject.own_folders
+    return len(folders) == MOST_FOLDERS or any(
+        name.endswith(_CONFIG) for _, names in folders for name in names
+    )
