@@ -527,3 +527,41 @@ def test_a_missing_configuration_of_the_bridge_is_reported(bot: Path) -> None:
     text += 'RosGzBridge(bridge_name="b", config_file="/absent/bridge.yaml")\n'
     (found,) = read_launch(written(bot, "a.launch.py", text), {}).diagnostics
     assert found.values == {"what": "bridge", "name": "/absent/bridge.yaml"}
+
+
+REMAPPED = """
+share = get_package_share_directory("bot")
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher", {space}
+             parameters=[{{"robot_description":
+                           Command(["xacro ", os.path.join(share, "urdf", "other.urdf")])}}],
+             remappings=[("{old}", "{new}"), ("/tf", "tf")]),
+        Node(package="robot_state_publisher", executable="robot_state_publisher", {space}
+             parameters=[{{"robot_description":
+                           Command(["xacro ", os.path.join(share, "urdf", "bot.xacro")])}}]),
+        Node(package="ros_gz_sim", executable="create", {space}
+             arguments=["-topic", "robot_description", "-name", "one"]),
+        Node(package="ros_gz_sim", executable="create", {space}
+             arguments=["-topic", "dock_description", "-name", "dock"]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("space", "old", "new"),
+    [
+        ("", "robot_description", "dock_description"),
+        ("", "/robot_description", "/dock_description"),
+        ('namespace="x",', "robot_description", "dock_description"),
+        ('namespace="x",', "/x/robot_description", "/x/dock_description"),
+    ],
+)
+def test_publishers_of_two_descriptions_have_topics_of_their_own(
+    bot: Path, space: str, old: str, new: str
+) -> None:
+    """Such as those of a robot and of its dock."""
+    text = REMAPPED.format(space=space, old=old, new=new)
+    found = [each[:2] for each in started(read_launch(written(bot, "a.launch.py", text), {}))]
+    assert found == [("one", "bot.xacro"), ("dock", "other.urdf")]

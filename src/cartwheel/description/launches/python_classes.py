@@ -132,6 +132,11 @@ class Classes:
         space = resolved(self.facts.namespace, joined(words.get("namespace", "")))
         described = [each for each in arguments if isinstance(each, Description)]
         pairs = words.get("remappings")
+        remappings = {
+            joined(each[0]): joined(each[1])
+            for each in (pairs if isinstance(pairs, list) else [])
+            if isinstance(each, list) and len(each) == 2
+        }
         given = words.get("parameters")
         values: dict[str, str] = {}
         for each in given if isinstance(given, list) else []:
@@ -147,18 +152,14 @@ class Classes:
             texts,
             space,
             described=described[0].number if described else None,
-            remappings={
-                joined(each[0]): joined(each[1])
-                for each in (pairs if isinstance(pairs, list) else [])
-                if isinstance(each, list) and len(each) == 2
-            },
+            remappings=remappings,
             values=values,
             origin=Origin(file=str(self.path), line=self.line),
         )
         parameters = words.get("parameters")
         for each in parameters if isinstance(parameters, list) else []:
             if isinstance(each, dict):
-                self._publish(space, each)
+                self._publish(space, each, remappings)
                 if package in BRIDGES and "config_file" in each:
                     self.facts.bridge(joined(each["config_file"]))
             elif package == "controller_manager" and isinstance(each, str | list):
@@ -170,14 +171,16 @@ class Classes:
         self.facts.bridge(joined(words.get("config_file", "")))
         return NOTHING
 
-    def _publish(self, space: str, parameters: Mapping[str, Any]) -> None:
+    def _publish(
+        self, space: str, parameters: Mapping[str, Any], remappings: Mapping[str, str]
+    ) -> None:
         """Stores the description that a node has as a parameter and publishes."""
         value = parameters.get("robot_description")
         number = value.number if isinstance(value, Description) else None
         if isinstance(value, str) and value.endswith(SUFFIXES):
             # The text of a file that was opened is its path.
             number = self.facts.add(Path(value), {})
-        self.facts.store_topic(space, number)
+        self.facts.store_topic(space, number, remappings)
 
     def process(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds what a command starts."""

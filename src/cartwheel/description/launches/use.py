@@ -235,10 +235,18 @@ class Facts:
             if read is not None:
                 self.store_parameter(f"/{spawn.source}", read())
 
-    def store_topic(self, space: str, number: int | None) -> None:
-        """Stores which description a robot_state_publisher publishes; the first one counts."""
+    def store_topic(self, space: str, number: int | None, remappings: Mapping[str, str]) -> None:
+        """Stores which description a robot_state_publisher publishes; the first one counts.
+
+        Args:
+            space: The namespace of the node.
+            number: The number of the description.
+            remappings: New names of the node's topics, by their old names.
+        """
         if number is not None:
-            key = resolved(space, "robot_description")
+            topic = "robot_description"
+            topics = {resolved(space, old): new for old, new in remappings.items()}
+            key = resolved(space, topics.get(resolved(space, topic), topic))
             if self.published.get(key, ABSENT) == ABSENT:
                 self.published[key] = number
 
