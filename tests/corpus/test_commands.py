@@ -159,7 +159,9 @@ WHEEL = (
 )
 
 
-@pytest.mark.parametrize("limit", ["", '<limit lower="-1e4" upper="1e4"/>'])
+@pytest.mark.parametrize(
+    "limit", ["", '<limit lower="-1e4" upper="1e4" effort="10" velocity="10"/>']
+)
 def test_wheels_that_are_mounted_in_opposite_directions_roll_forward_together(tmp_path, limit):
     """At equal speeds they would turn the robot, and weak motors cannot let its tyres slide.
 

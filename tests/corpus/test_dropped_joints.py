@@ -6,7 +6,8 @@ import pytest
 from tests.corpus.carts import cart, plugin, written
 
 from cartwheel.codes.devices import PLUGIN_UNKNOWN
-from cartwheel.codes.robot import INERTIA_MISSING, LIMIT_MISSING
+from cartwheel.codes.robot import INERTIA_MISSING, LIMIT_INCOMPLETE, LIMIT_MISSING
+from cartwheel.codes.tags import TAG_MISSING, VALUE_INVALID
 from cartwheel.corpus import try_robot
 
 MASS = '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'
@@ -47,6 +48,20 @@ def test_ros_loads_no_robot_with_a_joint_without_limit(tmp_path, kind, servo):
     verdict = try_robot(arm(tmp_path, limit="", kind=kind, servo=servo), standing=1.0)
     assert faults(verdict) == [("load", LIMIT_MISSING, "file")]
     assert not verdict.moves
+
+
+@pytest.mark.parametrize(
+    ("limit", "code"),
+    [
+        ('<limit lower="-1" upper="1" effort="10"/>', LIMIT_INCOMPLETE),
+        ('<limit lower="-1" upper="1" effort="inf" velocity="1"/>', VALUE_INVALID),
+        (f"{LIMIT}<dynamics/>", TAG_MISSING),
+    ],
+)
+def test_ros_loads_no_robot_that_its_parser_refuses(tmp_path, limit, code):
+    verdict = try_robot(arm(tmp_path, limit=limit), standing=1.0)
+    assert faults(verdict) == [("load", code, "file")]
+    assert verdict.outcome == "file"
 
 
 @pytest.mark.parametrize("kind", ["continuous", "fixed", "floating"])

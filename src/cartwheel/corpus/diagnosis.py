@@ -212,14 +212,15 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
 
 
 def _refused(description: RobotDescription) -> Diagnostic | None:
-    """An inertia for which gz-sim does not load a robot that is for gz-sim only, or noise for which
-    it does not, and with which Gazebo Classic crashes.
+    """What the URDF parser of ROS and Gazebo refuses, an inertia for which gz-sim does not load a
+    robot that is for gz-sim only, or noise for which it does not, and with which Gazebo Classic
+    crashes.
     """
     return next(
         (
             each
             for each in description.diagnostics
-            if (each.code is robot.INERTIA_IMPOSSIBLE and each.values.get("refused") is True)
+            if each.values.get("refused") is True
             or (each.code is devices.NOISE_TYPE_UNKNOWN and each.severity == "error")
         ),
         None,

@@ -141,7 +141,8 @@ def test_continuous_joints_have_no_range_but_effort():
 
 @pytest.mark.parametrize("what", ["effort", "velocity"])
 def test_an_effort_or_velocity_below_zero_means_no_limit(what):
-    limit = f'<limit {what}="-1"/>'
+    other = {"effort": "velocity", "velocity": "effort"}[what]
+    limit = f'<limit {what}="-1" {other}="1"/>'
     robot = load_text(urdf(link("a"), link("b"), joint("j", "a", "b", limit, "continuous")))
     assert getattr(robot.joints[0].axis, what) is None
     (reported,) = robot.diagnostics

@@ -28,6 +28,7 @@ from cartwheel.description.urdf.joint import directed, read_joint, without_inval
 from cartwheel.description.urdf.link import ReadLink, read_link
 from cartwheel.description.urdf.material import read_materials
 from cartwheel.description.urdf.merged_gravity import merge_gravity
+from cartwheel.description.urdf.refusals import refusals
 from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
@@ -59,6 +60,7 @@ def read_urdf(
     name = _name(root)
     root.get("version")
     ctx = UrdfContext(packages=packages, diagnostics=list(diagnostics))
+    ctx.diagnostics.extend(refusals(root))
     read_materials(root, ctx)
     link_nodes = root.all("link")
     if not link_nodes:
