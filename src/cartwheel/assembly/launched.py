@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -18,9 +18,9 @@ from cartwheel.description.kinematics import link_poses
 from cartwheel.description.launches import LaunchedModel, LaunchStart, LaunchUse, read_launch
 from cartwheel.description.launches.bridging import RenamedTopic
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.gz.bridge_file import Bridge, gz_topic, read_bridge
 from cartwheel.dialects.ros_control.selection import published_by
-from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.errors import CartwheelError, DescriptionError, Diagnostic, Origin
 from cartwheel.gazebo.entities import INERTIAL
 from cartwheel.gazebo.state import bounded
 from cartwheel.geometry import Pose
@@ -129,13 +129,28 @@ def open_launch(
             found += _without_joints(start.file, name, model)
         elif not each.is_shown:
             found.append(_refused(start.file, name))
+    bridges: tuple[Bridge, ...] = (*_readable(start.bridges, found), *map(_bridged, start.renamed))
     return Launched(
         world=opened,
         models=tuple(models),
-        bridges=(*start.bridges, *map(_bridged, start.renamed)),
+        bridges=bridges,
         file=file,
         diagnostics=tuple(found),
     )
+
+
+def _readable(bridges: Sequence[Path], found: list[Diagnostic]) -> Iterator[Path]:
+    """The configuration files of a bridge without those that are invalid, which are reported.
+
+    The launch file may pass a copy in which it has replaced parts of the text.
+    """
+    for path in bridges:
+        try:
+            read_bridge(path)
+        except CartwheelError as error:
+            found.append(error.diagnostic("warning"))
+        else:
+            yield path
 
 
 def _bridged(topic: RenamedTopic) -> Bridged:
