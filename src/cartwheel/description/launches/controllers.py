@@ -40,8 +40,10 @@ _STARTING = frozenset({"load_start_controller", "configure_start_controller"})
 _LOADING = frozenset({"load_controller", "load_configure_controller"})
 _ACTIVATE = frozenset({"--activate", "--start"})
 _CONTROLLER = re.compile(r"[\w/]+")
-_STARTED = re.compile(r"(?:start|activate)_controllers['\"]?\s*:\s*\[([^\]]*)\]")
+_STARTED = re.compile(r"\b(?:start|activate)_controllers['\"]?\s*:\s*\[([^\[\]]*)\]")
 """The controllers that a request starts. That of ROS 1 has the name of the list first."""
+_STARTS = re.compile(r"\b(?:start|activate)_controllers['\"]?\s*:")
+"""A request that starts controllers, which may be listed in another form."""
 _FIRST = re.compile(r"\s*['\"]?\[([^\]]*)\]")
 """The first argument of a request without names: the controllers to start."""
 _REQUESTED = re.compile(r"\bname['\"]?\s*:\s*['\"]?([\w/]+)")
@@ -149,20 +151,21 @@ def by_service(words: Iterable[str]) -> ControllerCommand | None:
         return None
     space = "" if UNKNOWN in space else space.strip("/")
     request = " ".join(rest)
+    unsure = UNKNOWN in request
     if verb == "switch_controller":
         found = _STARTED.search(request) or _FIRST.match(request)
         listed = found[1].split(",") if found is not None else []
         return ControllerCommand(
             space=space,
             started=tuple(_names(each.strip("'\" ") for each in listed)),
-            unsure=UNKNOWN in request,
+            unsure=unsure or (found is None and _STARTS.search(request) is not None),
         )
     named = _REQUESTED.search(request)
-    names = tuple(_names([named[1]] if named is not None else rest[-1:]))
+    names = tuple(_names([named[1]] if named is not None else rest[-1:])) if not unsure else ()
     if verb.endswith("_and_start_controller"):
-        return ControllerCommand(space=space, started=names)
+        return ControllerCommand(space=space, started=names, unsure=unsure)
     if verb.startswith("load_"):
-        return ControllerCommand(space=space, loaded=names, decided=False)
+        return ControllerCommand(space=space, loaded=names, decided=False, unsure=unsure)
     return None
 
 
@@ -174,14 +177,17 @@ def shell_commands(words: Iterable[str]) -> Iterator[list[str]]:
     """
     for text in _BETWEEN.split(" ".join(words)):
         parts = [stripped for part in text.split() if (stripped := part.strip(_QUOTES))]
-        while parts and parts[0] in _PREFIXES:
-            parts = parts[1:]
-        if parts and parts[0].rpartition("/")[2] in _SHELLS:
+        parts = [*itertools.dropwhile(_PREFIXES.__contains__, parts)]
+        if parts and _is_shell(parts[0]):
             # The options of the shell, such as -lc, precede the command.
-            while parts and (parts[0].startswith("-") or parts[0].rpartition("/")[2] in _SHELLS):
-                parts = parts[1:]
+            options = itertools.dropwhile(lambda one: one.startswith("-") or _is_shell(one), parts)
+            parts = [*options]
         if parts:
             yield parts
+
+
+def _is_shell(program: str) -> bool:
+    return program.rpartition("/")[2] in _SHELLS
 
 
 def _apart(words: Iterable[str]) -> list[str]:
