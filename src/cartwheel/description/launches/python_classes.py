@@ -66,8 +66,8 @@ class Classes:
         name = text(words.get("name", first))
         if not self._depth:
             self.facts.declared.add(name)
-        if "default_value" in words and name not in self.defaults:
-            self.defaults[name] = joined(words["default_value"])
+        if name not in self.defaults and ("default_value" in words or UNKNOWN in words):
+            self.defaults[name] = joined(words.get("default_value", NOTHING))
         if name not in self._given and name not in self.defaults and UNKNOWN not in name:
             origin = Origin(file=shown_path(self.path), line=self.line)
             self.facts.required[self.path, name] = origin
@@ -75,10 +75,11 @@ class Classes:
             self.facts.defaults[name] = joined(self.defaults[name])
         return NOTHING
 
-    def setting(self, first: Any, places: list[Any], _: dict[str, Any]) -> Any:
+    def setting(self, first: Any, places: list[Any], words: dict[str, Any]) -> Any:
         """Stores the value of a launch argument."""
-        if len(places) > 1:
-            self.defaults[text(first)] = joined(places[1])
+        if len(places) > 1 or "value" in words:
+            value = places[1] if len(places) > 1 else words["value"]
+            self.defaults[text(words.get("name", first))] = joined(value)
         return NOTHING
 
     def executable(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
@@ -99,8 +100,10 @@ class Classes:
         """Reads an included launch file."""
         source = words.get("launch_description_source", first)
         passed = words.get("launch_arguments", {})
+        known = isinstance(passed, dict)
         if isinstance(passed, list):
             pairs = [each for each in passed if isinstance(each, list) and len(each) == 2]
+            known = len(pairs) == len(passed)
             passed = {text(key): value for key, value in pairs}
         arguments = (
             {key: joined(value) for key, value in passed.items()}
@@ -110,7 +113,11 @@ class Classes:
         self.facts.effort.spend(len(self.defaults))
         defaults = {name: joined(value) for name, value in self.defaults.items()}
         inherited = {**defaults, **self._given}
+        required = dict(self.facts.required)
         self.facts.include(joined(source), arguments, self._depth, inherited)
+        if not known or UNKNOWN in arguments:
+            # The unknown arguments may be those without a default.
+            self.facts.required = required
         return NOTHING
 
     def push(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:

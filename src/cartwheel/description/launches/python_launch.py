@@ -307,11 +307,7 @@ class _Reader:
         if isinstance(node, ast.List | ast.Tuple | ast.Set):
             return self._elements(node.elts, self.value)
         if isinstance(node, ast.Dict):
-            return {
-                text(self.value(key)): self.value(value)
-                for key, value in zip(node.keys, node.values, strict=True)
-                if key is not None
-            }
+            return self._dictionary(zip(node.keys, node.values, strict=True))
         if isinstance(node, ast.BinOp):
             return combined(node.op, self.value(node.left), self.value(node.right))
         if isinstance(node, ast.UnaryOp | ast.BoolOp | ast.Compare):
@@ -338,6 +334,22 @@ class _Reader:
         if isinstance(node, ast.Call):
             return self._call(node)
         return NOTHING
+
+    def _dictionary(self, pairs: Iterable[tuple[ast.expr | None, ast.expr]]) -> dict[str, Any]:
+        """The values by their keys. Those of another dictionary, as in ``{**other}``, have none; if
+        it is unknown, there is a value without a known key.
+        """
+        found: dict[str, Any] = {}
+        for key, node in pairs:
+            value = self.value(node)
+            if key is not None:
+                found[text(self.value(key))] = value
+            elif isinstance(value, dict):
+                self._facts.effort.spend(len(value))
+                found |= {text(name): each for name, each in value.items()}
+            else:
+                found[UNKNOWN] = NOTHING
+        return found
 
     def _conditional(self, node: ast.IfExp) -> Any:
         """The value of ``a if condition else b``: a if the condition is unknown, which is noted."""
@@ -404,17 +416,14 @@ class _Reader:
                 )
                 for each in node.args
             ]
-        words = {
-            each.arg: self.value(each.value)
+        words = self._dictionary(
+            (None if each.arg is None else ast.Constant(each.arg), each.value)
             for each in node.keywords
-            if each.arg and each.arg not in ("condition", "target_action")
-        }
+            if each.arg not in ("condition", "target_action")
+        )
         if not named:
             return NOTHING
         if function is not None and isinstance(node.func, ast.Name):
-            for each in node.keywords:
-                given = self.value(each.value) if each.arg is None else NOTHING
-                words |= given if isinstance(given, dict) else {}
             return self._called(function, places, words)
         if name not in SAME and not is_kept:
             for value in (*places, *words.values()):

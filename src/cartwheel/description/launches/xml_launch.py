@@ -70,14 +70,16 @@ class _Reader:
             given = {
                 child.attributes.get("name", ""): self._given_value(child)
                 for child in node.children
-                if child.tag == "arg" and self._holds(child)
+                if child.tag in ("arg", "let") and self._holds(child)
             }
             if node.attributes.get("pass_all_args") == "true":
                 self._facts.effort.spend(len(self._arguments))
                 given = {**self._arguments, **given}
             file = self._value(node, "file")
             # In ROS 2, files inherit the arguments of those that include them.
-            is_ros2 = file.endswith(".py") or "find-pkg-share" in node.attributes.get("file", "")
+            stated = node.attributes.get("file", "")
+            near = "dirname" in stated and file.endswith(".launch.xml")
+            is_ros2 = near or file.endswith(".py") or "find-pkg-share" in stated
             with facts.within(self._space(node)):
                 facts.include(file, given, self._depth, self._arguments if is_ros2 else {})
         elif tag == "param":
@@ -152,7 +154,7 @@ class _Reader:
             self._arguments[name] = self._value(node, "default")
             if not self._depth:
                 self._facts.defaults[name] = self._arguments[name]
-        elif name not in self._given:
+        elif name not in self._arguments:
             self._facts.required[self._path, name] = node.origin
 
     def _given_value(self, node: Node) -> str:
