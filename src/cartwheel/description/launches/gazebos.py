@@ -36,6 +36,10 @@ _LAUNCH_FILES: Mapping[str, Simulator] = {
     "ros_gz_spawn_model.launch.py": "gz",
 }
 """Launch files of these packages, by which others start Gazebo."""
+_COMMON = "gazebo.launch.py"
+"""A name that launch files of other packages also have, which may start gz-sim."""
+_SUBCOMMANDS: Mapping[str, str] = {"gz": "sim", "ign": "gazebo"}
+"""What follows these programs if they start gz-sim. Gazebo Classic also has a program ``gz``."""
 _ARGUMENTS = ("gz_args", "ign_args")
 _WORLD = "world_sdf_file"
 """The argument and parameter of ros_gz_sim's server that names its world."""
@@ -56,20 +60,25 @@ class Gazebos:
 
     def add_command(self, words: Sequence[str]) -> None:
         """Adds what a command starts."""
-        program = words[0].split()[0] if words and words[0].strip() else ""
-        self._add(_PROGRAMS.get(program.rsplit("/", 1)[-1], ""), words[1:])
+        program, *rest = [*" ".join(words[:1]).split(), *words[1:]] or [""]
+        name = program.rsplit("/", 1)[-1]
+        if name not in _SUBCOMMANDS or rest[:1] == [_SUBCOMMANDS[name]]:
+            self._add(_PROGRAMS.get(name, ""), rest)
 
-    def add_launch_file(self, name: str, arguments: Mapping[str, str], *, is_own: bool) -> None:
+    def add_launch_file(
+        self, name: str, arguments: Mapping[str, str], *, is_own: bool, is_sure: bool = True
+    ) -> None:
         """Adds what an included launch file starts.
 
         Args:
             name: The end of its path.
             arguments: The arguments that it receives.
             is_own: Whether it exists here and is read itself.
+            is_sure: Whether it can only be in a package of Gazebo.
         """
         if is_own:
             return
-        kind = _LAUNCH_FILES.get(name, "")
+        kind = _LAUNCH_FILES.get(name, "") if is_sure or name != _COMMON else ""
         stated = [arguments[each] for each in _ARGUMENTS if arguments.get(each)]
         if stated:
             kind = "gz"

@@ -458,7 +458,9 @@ class Facts:
                 self._begin(world_in(split(arguments.get(name, ""))))
         path = Path(text.strip())
         is_own = UNKNOWN not in text and depth < DEEPEST and is_file(path)
-        self.gazebos.add_launch_file(path.name, arguments, is_own=is_own)
+        absent = any(each.startswith("package ") for each in self.absent)
+        is_sure = "gazebo_ros" in path.parts or (not absent and UNKNOWN not in text)
+        self.gazebos.add_launch_file(path.name, arguments, is_own=is_own, is_sure=is_sure)
         if is_own:
             self.effort.spend(len(inherited))
             given = {**inherited, **arguments}
