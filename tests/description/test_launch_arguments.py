@@ -81,3 +81,17 @@ def test_arguments_in_xml_of_ros2_that_are_stated(tmp_path, text):
 def test_an_argument_in_xml_that_is_not_stated(tmp_path):
     text = '<launch><include file="$(dirname)/inner.launch.xml"/></launch>'
     assert unknown(tmp_path, "outer.launch.xml", text) == ["space"]
+
+
+def test_launch_files_around_one_in_no_package_are_not_searched(tmp_path):
+    file = tmp_path / "robot.launch"
+    file.write_text(
+        '<launch><arg name="model"/><node pkg="gazebo_ros" type="spawn_model" name="s" '
+        'args="-urdf -file $(dirname)/a.urdf -model $(arg model)"/></launch>'
+    )
+    (tmp_path / "a.urdf").write_text(ROBOT)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/all.launch").write_text(
+        f'<launch><include file="{file}"><arg name="model" value="one"/></include></launch>'
+    )
+    assert [each.spawn.name for each in read_launch(file, {}).models] == [""]

@@ -10,7 +10,7 @@ from cartwheel.codes.files import LAUNCH_VALUE_UNKNOWN
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.package_search import Searched
 from cartwheel.description.files.packages import Packages
-from cartwheel.description.files.repositories import root_of
+from cartwheel.description.files.repositories import repository_of, root_of
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.search import facts_of, launch_files
 from cartwheel.description.launches.use import Facts
@@ -25,6 +25,8 @@ def stated_by_includers(
 ) -> dict[str, str]:
     """The arguments for which all launch files that include a launch file state the same value.
 
+    They are searched in its package and those beside it, or in its repository.
+
     Args:
         file: The launch file.
         names: Names of its arguments.
@@ -33,8 +35,9 @@ def stated_by_includers(
     """
     values: dict[str, set[str]] = {}
     searched: Searched = {}
-    here = file.resolve()
-    for path in itertools.islice(launch_files(root_of(file) or file.parent, effort), _MOST):
+    here, folder = file.resolve(), root_of(file) or repository_of(file)
+    files = () if folder is None else launch_files(folder, effort)
+    for path in itertools.islice(files, _MOST):
         if path.resolve() == here:
             continue
         packages = Packages(path, package_path, searched=searched)
