@@ -21,11 +21,13 @@ _MOST = 2000
 """Maximum number of folders that are searched, and of files that are read."""
 _LONGEST = 200_000
 """Number of bytes that are read of each."""
-_STARTING = re.compile(
-    r"spawner|(?:load|switch|configure|activate)_controller|set_controller_state"
-    r"|(?:start|activate)_controllers|controller_manager"
+_MOST_BYTES = 20_000_000
+"""Number of bytes that are read of all."""
+_STARTING = (
+    *("spawner", "controller_manager", "set_controller_state", "start_controllers"),
+    *(f"{verb}_controller" for verb in ("load", "switch", "configure", "activate")),
 )
-"""Part of a text that starts controllers."""
+"""Parts of texts that start controllers."""
 _WORD = re.compile(r"\w++")
 
 
@@ -44,7 +46,7 @@ def started_by_others(robot: Path, names: Collection[str]) -> frozenset[str]:
     for text in _texts(folder):
         if not left:
             break
-        if _STARTING.search(text):
+        if any(part in text for part in _STARTING):
             words = set(_WORD.findall(text))
             held = {name for name in left if name.rpartition("/")[2] in words}
             found |= held
@@ -62,6 +64,11 @@ def _texts(folder: Path) -> Iterator[str]:
         and not name.endswith(_LAUNCHES)
         and here.name not in _LAUNCH_FOLDERS
     )
+    left = _MOST_BYTES
     for path in itertools.islice(paths, _MOST):
         with contextlib.suppress(OSError):
-            yield read_start(path, _LONGEST).decode("utf-8", "replace")
+            content = read_start(path, min(left, _LONGEST))
+            left -= len(content)
+            yield content.decode("utf-8", "replace")
+        if not left:
+            return
