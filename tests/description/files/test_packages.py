@@ -439,3 +439,23 @@ def test_the_own_repository_comes_before_a_neighbour(tmp_path, mark):
         deep = package(own / "a" / "b" / "c" / "d" / "hand")
         package(tmp_path / "src" / "other" / "hand")
         assert packages(file).find("hand") == deep
+
+
+def test_folders_of_the_own_repository_are_listed_once(tmp_path, monkeypatch):
+    home = tmp_path / "home"
+    (home / ".github").mkdir(parents=True)
+    (home / "deep" / "b").mkdir(parents=True)
+    for name in "abcd":
+        package(tmp_path / "other" / name)
+    listed = []
+
+    def listing(root):
+        listed.append(root)
+        return package_folders.folders_below(root)
+
+    monkeypatch.setattr(package_search, "folders_below", listing)
+    found = packages(robot(home), package_path=[])
+    assert [found.found(name) for name in "abcd"] == [
+        home / "deep" / "b" if name == "b" else tmp_path / "other" / name for name in "abcd"
+    ]
+    assert listed == [home]

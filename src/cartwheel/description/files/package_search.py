@@ -204,7 +204,7 @@ class PackageSearch:
         if home is None or found.is_relative_to(home) or any(map(found.is_relative_to, given)):
             return found
         own = self._in(home, crawled=True).first(name)
-        own = own or next((each for each in folders_below(home) if each.name == name), None)
+        own = own or self._folders_of_home.get(name)
         if own is None:
             self.neighbours[name] = found
         return own or found
@@ -215,6 +215,14 @@ class PackageSearch:
         if self.file is None:
             return None
         return repository_of(self.file) or root_of(self.file)
+
+    @cached_property
+    def _folders_of_home(self) -> dict[str, Path]:
+        """The nearest folders below that of `_home` that are in no package, by name."""
+        found: dict[str, Path] = {}
+        for folder in () if self._home is None else folders_below(self._home):
+            found.setdefault(folder.name, folder)
+        return found
 
     def _own_folder(self, name: str) -> Path | None:
         """The folder with this name that contains the file but no manifest, if the file is in no

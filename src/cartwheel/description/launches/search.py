@@ -164,6 +164,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
         described.append((None, {}))
     found = []
     spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))
+    worlds = tuple(map(facts.found_world, dict.fromkeys(facts.gazebos.worlds)))
     for number, (description, arguments) in enumerate(described):
         known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
         found.append(
@@ -189,7 +190,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,
                 gazebos=frozenset(facts.gazebos.kinds),
-                gz_worlds=tuple(map(facts.found_world, dict.fromkeys(facts.gazebos.worlds))),
+                gz_worlds=worlds,
                 models=tuple(dict.fromkeys(each.name for each in facts.spawns if each.name)),
                 spaces=frozenset(
                     UNKNOWN if "namespace" in each.unknown else each.namespace
