@@ -4,8 +4,12 @@ import pytest
 
 from cartwheel.checks import subject
 from cartwheel.checks.checking import check
+from cartwheel.checks.rules.worlds import sensor_systems
 from cartwheel.codes.devices import SENSOR_SYSTEM_MISSING
 from cartwheel.corpus import try_robot
+from cartwheel.description.launches import LaunchSearch
+from cartwheel.description.model import WorldDescription
+from cartwheel.errors import Origin
 
 BODY = (
     '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
@@ -214,3 +218,30 @@ def test_a_limited_number_of_folders_is_searched_once(tmp_path, monkeypatch, cou
     monkeypatch.setattr(subject, "source_folders", folders)
     assert bool(missing(path)) == found
     assert len(visited) <= min(count, subject.MOST_FOLDERS)
+
+
+def test_a_world_is_read_once_for_all_launch_files(tmp_path, monkeypatch):
+    included = "<include><uri>model://nowhere</uri></include>"
+    launches = {f"launch_{number}": OWN.format("arena") for number in range(3)}
+    path = package(tmp_path, arena=PHYSICS + included, **launches)
+    read = []
+
+    def load(file, **_):
+        read.append(file)
+        return WorldDescription(name="arena", origin=Origin(file=str(file)))
+
+    monkeypatch.setattr(sensor_systems, "load_world", load)
+    assert missing(path)
+    assert len(read) == 1
+
+
+def test_the_launch_files_of_a_robot_are_searched_once(tmp_path):
+    path = package(tmp_path, robot=f"<gazebo>{IMU}</gazebo>", gz='"empty.sdf"')
+    searched = []
+
+    def search(file):
+        searched.append(file)
+        return LaunchSearch().of(file)
+
+    assert check(path, launches=search).findings
+    assert len(searched) == len(set(searched))

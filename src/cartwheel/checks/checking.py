@@ -147,7 +147,9 @@ def _subject(
     found: dict[Path, OwnLaunches] = {}
 
     def search(description: Path) -> OwnLaunches:
-        return found.setdefault(description, find(description))
+        if description not in found:
+            found[description] = find(description)
+        return found[description]
 
     file = Path(opened.files[0])
     if isinstance(read, RobotDescription) and any(

@@ -7,8 +7,9 @@ measures. A system in a model acts on the whole world.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from pathlib import Path
 
 from cartwheel.checks import nodes
@@ -138,7 +139,10 @@ def _gz_worlds(subject: Subject) -> list[_World]:
     if isinstance(subject.read, WorldDescription):
         found = _itself(subject, subject.read)
     else:
-        found = [each for use in subject.own_launches.launches for each in _started(subject, use)]
+        # Many launch files may start the same world.
+        systems_of = cache(partial(_read, subject))
+        uses = subject.own_launches.launches
+        found = [each for use in uses for each in _started(subject, use, systems_of)]
     return [] if found and _has_own_defaults(subject) else found
 
 
@@ -169,8 +173,13 @@ def _itself(subject: Subject, read: WorldDescription) -> list[_World]:
     ]
 
 
-def _started(subject: Subject, use: LaunchUse) -> list[_World]:
-    """The worlds of a launch file that starts the robot in gz-sim; none if one is unknown."""
+def _started(
+    subject: Subject, use: LaunchUse, systems_of: Callable[[Path], frozenset[str] | None]
+) -> list[_World]:
+    """The worlds of a launch file that starts the robot in gz-sim; none if one is unknown.
+
+    `systems_of` returns the plugins in the file of a world; None if it cannot be read.
+    """
     file = Path(subject.files[0]).resolve()
     if use.description is None or use.description.resolve() != file or "gz" not in use.gazebos:
         return []
@@ -179,7 +188,7 @@ def _started(subject: Subject, use: LaunchUse) -> list[_World]:
     worlds = []
     for stated in use.gz_worlds:
         files = list(_files(subject, stated))
-        read = [_read(each, subject) for each in files]
+        read = [systems_of(each) for each in files]
         if stated not in _STOCK and (not read or None in read):
             return []
         known = [each for each in read if each is not None]
@@ -206,7 +215,7 @@ def _files(subject: Subject, world: str) -> Iterator[Path]:
             yield folder / path.name
 
 
-def _read(path: Path, subject: Subject) -> frozenset[str] | None:
+def _read(subject: Subject, path: Path) -> frozenset[str] | None:
     """The plugins of a world and of the models that it includes; None if it cannot be read."""
     root = xml.readable_file(path)
     if root is None or not nodes.children(root, "world"):
