@@ -11,6 +11,7 @@ from cartwheel.description.files import package_folders, package_search
 from cartwheel.description.files import packages as packages_module
 from cartwheel.description.files.package_folders import share
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.repositories import root_of
 from cartwheel.errors import DescriptionError, Origin
 
 HERE = Origin(file="robot.urdf", line=3)
@@ -459,3 +460,15 @@ def test_folders_of_the_own_repository_are_listed_once(tmp_path, monkeypatch):
         home / "deep" / "b" if name == "b" else tmp_path / "other" / name for name in "abcd"
     ]
     assert listed == [home]
+
+
+def test_a_folder_around_a_package_that_may_not_be_read(tmp_path, monkeypatch):
+    own = package(tmp_path / "closed" / "own")
+    package(tmp_path / "closed" / "other")
+    assert root_of(robot(own)) == own.parent
+
+    def refuse(_):
+        raise PermissionError
+
+    monkeypatch.setattr("pathlib.Path.iterdir", refuse)
+    assert root_of(robot(own)) == own

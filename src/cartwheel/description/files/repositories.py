@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cartwheel.description.files.package_folders import around
+from cartwheel.description.files.package_folders import around, is_file
 
 _ROOT = (".git", ".github", ".gitmodules")
 """Entries that only the root of a repository contains."""
@@ -45,14 +45,18 @@ def root_of(description: Path) -> Path | None:
     Its launch files may start the description.
     """
     for folder in description.absolute().parents[:_LEVELS]:
-        if (folder / "package.xml").is_file() or (folder / "manifest.xml").is_file():
-            beside = [
-                each
-                for each in folder.parent.iterdir()
-                if each != folder and (each / "package.xml").is_file()
-            ]
-            return folder.parent if beside else folder
+        if is_file(folder / "package.xml") or is_file(folder / "manifest.xml"):
+            return folder.parent if _has_others(folder) else folder
     return None
+
+
+def _has_others(folder: Path) -> bool:
+    """Whether there are packages beside one; False if the folder above it may not be read."""
+    try:
+        beside = [each for each in folder.parent.iterdir() if each != folder]
+    except OSError:
+        return False
+    return any(is_file(each / "package.xml") for each in beside)
 
 
 def _has(folder: Path, names: tuple[str, ...]) -> bool:
