@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from cartwheel.description.launches.controllers import by_service, shell_commands
+from cartwheel.description.launches.controllers import by_service, by_spawner, shell_commands
 from cartwheel.description.launches.effort import UNKNOWN
 
 SWITCH = "/controller_manager/switch_controller"
@@ -55,3 +55,9 @@ def test_a_long_command_takes_no_minutes(word):
     start = time.thread_time()
     assert [*shell_commands(["bash", *[word] * 50_000, "exec; true"])][-1] == ["true"]
     assert time.thread_time() - start < 1.0
+
+
+def test_a_spawner_with_a_file_starts_controllers_whose_names_are_unknown():
+    """ROS 1's spawner loads a YAML file and starts the controllers in it."""
+    assert by_spawner(["/ws/config/joints.yaml"], "").unsure
+    assert not by_spawner(["joint_state_controller"], "").unsure

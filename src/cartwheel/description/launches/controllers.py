@@ -106,7 +106,8 @@ def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
         loaded=() if starts else known,
         files=tuple(files),
         arguments=tuple(arguments),
-        unsure=any(UNKNOWN in name for name in names),
+        # ROS 1's spawner also takes files, and starts the controllers that they name.
+        unsure=any(UNKNOWN in name or name.endswith((".yaml", ".yml")) for name in names),
     )
 
 
