@@ -137,7 +137,7 @@ def test_a_finding_in_the_controller_file_of_a_model_explains_its_failure(tmp_pa
     (tmp_path / "config").mkdir()
     (tmp_path / "config/drive.yaml").write_text(CONTROLLERS)
     control = """<plugin name="c" filename="libgazebo_ros2_control.so"><parameters>
-      /home/me/ws/install/yard/share/yard/config/drive.yaml</parameters></plugin>"""
+      /opt/me/ws/install/yard/share/yard/config/drive.yaml</parameters></plugin>"""
     text = cart("cart", file="none.so")
     start, end = text.index("<plugin"), text.index("</plugin>") + len("</plugin>")
     file = world(tmp_path, text[:start] + control + text[end:])

@@ -111,7 +111,9 @@ def named_files(robot: Robot) -> Iterator[Element]:
 def resolved(packages: Packages, element: Element) -> Path | Diagnostic:
     """The file that a tag refers to, or a diagnostic if it cannot be found."""
     try:
-        return packages.resolve(element.text.strip(), element.origin, what="file")
+        return packages.resolve(
+            element.text.strip(), element.origin, what="file", use="controllers"
+        )
     except DescriptionError as error:
         return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
             message=f"{error.message}, so no controller starts",

@@ -177,6 +177,7 @@ def _load_faults(
     for reason in reasons:
         if reason is not None:
             yield Fault(test="load", reason=reason)
+    yield from _files_of_author(verdict, description)
     for joint, dropped in dropped_joints(verdict, description):
         yield Fault(test="load", subject=joint, reason=dropped)
     for built in filter(is_built_model, description.diagnostics):
@@ -225,6 +226,18 @@ def _refused(description: RobotDescription) -> Diagnostic | None:
         ),
         None,
     )
+
+
+def _files_of_author(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
+    """The first file of each use that is only in a home folder of the robot's author.
+
+    Cartwheel finds such files in the robot's package, or others instead; ROS and Gazebo do not.
+    """
+    said = (*description.diagnostics, *verdict.diagnostics, *verdict.observed)
+    key = "needed_for"
+    lost = {each.values[key]: each for each in reversed(said) if key in each.values}
+    for use, reason in reversed(lost.items()):
+        yield Fault(test="controller" if use == "controllers" else "load", reason=reason)
 
 
 def _material_twice(description: RobotDescription) -> Diagnostic | None:

@@ -4,14 +4,41 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
+from cartwheel.codes.files import FILE_ELSEWHERE
 from cartwheel.description.files.package_folders import package_above, package_name
+from cartwheel.errors import Diagnostic, Origin
 
 FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 """A package's folder in xacro and in launch files."""
 _DEEPEST = 8
 """Number of folders in the path of a missing file that may be packages."""
+_HOME = re.compile(r"(?:file://)?/(?:home|Users)/[^/]+/")
+"""The beginning of a path in a home folder. That of root is often a folder of a container, which
+has the file."""
+
+Use = Literal["", "collision", "controllers", "include", "model"]
+"""What a simulation lacks without a file; empty if it only looks different."""
+_LOST: dict[Use, str] = {
+    "collision": "Gazebo leaves out the collision",
+    "controllers": "no controller starts",
+    "include": "xacro stops",
+    "model": "Gazebo leaves out the model",
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Moved:
+    """A file that is not where a description says."""
+
+    path: Path
+    """The file that is used."""
+    origin: Origin | None
+    """The first element that refers to it, or one for which it matters."""
+    use: Use
 
 
 def other_places(
@@ -59,4 +86,33 @@ def how_to_refer_to(path: Path) -> str:
     return (
         f"Write package://{name}/{file}, or $(find {name})/{file} in xacro, or a path relative to "
         "this file."
+    )
+
+
+def is_in_home(uri: str) -> bool:
+    """Whether an absolute path, or the URI of a file, is in a home folder."""
+    return _HOME.match(uri) is not None
+
+
+def report(uri: str, moved: Moved) -> Diagnostic:
+    """Reports a file that is not where a description says.
+
+    It is an error if no other computer than the author's has the file, and it matters. Its value
+    ``needed_for`` then contains its use.
+    """
+    lacking = FIND.search(uri)
+    stops = f'Without the package "{lacking[1]}", ROS stops here. ' if lacking else ""
+    lost = moved.use if moved.use and is_in_home(uri) else ""
+    message = f'"{uri}" does not exist, so "{moved.path}" is used'
+    if lost:
+        message = (
+            f'"{uri}" is in a home folder, so {_LOST[lost]} on other computers; here, '
+            f'"{moved.path}" is used'
+        )
+    return FILE_ELSEWHERE.diagnostic(
+        message,
+        origin=moved.origin,
+        hint=f"{stops}{how_to_refer_to(moved.path)}",
+        severity="error" if lost else "warning",
+        values={"name": uri, "used": str(moved.path), **({"needed_for": lost} if lost else {})},
     )

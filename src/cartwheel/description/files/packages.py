@@ -19,7 +19,7 @@ from cartwheel.description.files import fuel
 from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.files.missing_files import advice_about, missing
 from cartwheel.description.files.missing_packages import how_to_install
-from cartwheel.description.files.other_places import FIND, how_to_refer_to, other_places
+from cartwheel.description.files.other_places import FIND, Moved, Use, other_places, report
 from cartwheel.description.files.package_folders import (
     around,
     is_dir,
@@ -80,9 +80,8 @@ class Packages:
         """The packages whose stand-ins were read, with the first element that refers to each."""
         self._neighbours: dict[str, Origin | None] = {}
         """The first elements that refer to packages of other repositories."""
-        self.found_elsewhere: dict[str, tuple[Path, Origin | None]] = {}
-        """Files that are not where the description says: the file that is used, and the first
-        element that refers to it, by the statement."""
+        self.found_elsewhere: dict[str, Moved] = {}
+        """Files that are not where the description says, by the statement."""
 
     @property
     def folder(self) -> Path:
@@ -134,6 +133,7 @@ class Packages:
         what: str = "file",
         folder: bool = False,
         without: Collection[str] = (),
+        use: Use = "",
     ) -> Path:
         """The existing file or model folder for a URI.
 
@@ -144,6 +144,7 @@ class Packages:
             what: What it is, for the error.
             folder: Whether a folder is also accepted, as for an included model.
             without: Files that cannot be meant; see `elsewhere`.
+            use: What Gazebo leaves out without the file, if this matters.
 
         Raises:
             DescriptionError: The file was not found; the hint lists the searched folders.
@@ -169,11 +170,11 @@ class Packages:
         except DescriptionError as error:
             if error.code is not codes.FILE_MISSING:
                 raise
-            other = self.elsewhere(uri.strip(), origin, without=without)
+            other = self.elsewhere(uri.strip(), origin, without=without, use=use)
             if other is None:
                 raise
             return other
-        other = self.elsewhere(uri, origin, without=without)
+        other = self.elsewhere(uri, origin, without=without, use=use)
         if other is not None:
             return other
         if self.reach is not None and not any(map(self.may_read, candidates)):
@@ -199,7 +200,12 @@ class Packages:
         raise missing(what, uri, f'the {what} "{uri}" does not exist', origin, near)
 
     def elsewhere(
-        self, uri: str, origin: Origin | None, *, without: Collection[str] = ()
+        self,
+        uri: str,
+        origin: Origin | None,
+        *,
+        without: Collection[str] = (),
+        use: Use = "",
     ) -> Path | None:
         """The file that is meant by a path of another computer, such as its author's.
 
@@ -207,6 +213,7 @@ class Packages:
             uri: The statement in the description.
             origin: Origin of the statement.
             without: Files that cannot be meant, such as those that contain the statement.
+            use: What Gazebo leaves out without the file, if this matters.
 
         Returns:
             The file, which is noted in `found_elsewhere`; None if there is none.
@@ -219,7 +226,9 @@ class Packages:
         excluded = {real(Path(each)) for each in without}
         for path in candidates:
             if is_file(path) and self.may_read(path) and real(path) not in excluded:
-                self.found_elsewhere.setdefault(uri, (path, origin))
+                moved = self.found_elsewhere.get(uri)
+                if moved is None or (use and not moved.use):
+                    self.found_elsewhere[uri] = Moved(path=path, origin=origin, use=use)
                 return path
         return None
 
@@ -238,15 +247,7 @@ class Packages:
                 hint="To use another one, add its folder to the package path.",
                 values={"name": name, "used": str(folder)},
             )
-        for uri, (path, origin) in self.found_elsewhere.items():
-            lacking = FIND.search(uri)
-            stops = f'Without the package "{lacking[1]}", ROS stops here. ' if lacking else ""
-            yield codes.FILE_ELSEWHERE.diagnostic(
-                f'"{uri}" does not exist, so "{path}" is used',
-                origin=origin,
-                hint=f"{stops}{how_to_refer_to(path)}",
-                values={"name": uri, "used": str(path)},
-            )
+        yield from (report(uri, moved) for uri, moved in self.found_elsewhere.items())
 
     def model_folders(self) -> list[Path]:
         """The folders that are searched for Gazebo models, in order."""

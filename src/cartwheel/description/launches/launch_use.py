@@ -12,10 +12,11 @@ from cartwheel.errors import Diagnostic, Origin
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Unfound:
-    """A YAML file with the parameters of one controller of ROS 1 that does not exist."""
+    """A YAML file with the parameters of controllers of ROS 1 that does not exist."""
 
     controller: str
-    """The name of the controller: the end of the namespace into which the file is loaded."""
+    """The name of the controller: the end of the namespace into which the file is loaded; empty for
+    a file in a home folder, whose controllers are unknown."""
     file: Path
     origin: Origin
     """The ``<rosparam>``."""

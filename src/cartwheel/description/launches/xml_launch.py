@@ -12,6 +12,7 @@ from typing import Any
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.expressions import Function
+from cartwheel.description.files.other_places import is_in_home
 from cartwheel.description.launches.bridging import BRIDGES
 from cartwheel.description.launches.effort import UNKNOWN, limited
 from cartwheel.description.launches.environment import ros_variable
@@ -130,13 +131,17 @@ class _Reader:
                     facts.bridge(self._value(child, "value"))
 
     def _find(self, node: Node, space: str) -> None:
-        """Notes the file of a ``<rosparam>`` with one controller's parameters if it is missing."""
+        """Notes the file of a ``<rosparam>`` if it is missing: one with the parameters of a single
+        controller, or one in a home folder.
+        """
         stated = node.attributes["file"]
         packages = [words for kind, words in _CALL.findall(stated) if kind == "find"]
         path, name = Path(self._value(node, "file").strip()), space.strip("/ ").rpartition("/")[2]
         known = path in self._facts.lost and len(packages) == stated.count("$") == 1
         found = known and f'package "{packages[0].strip()}"' not in self._facts.absent
-        if found and re.fullmatch(r"\w+", name):
+        moved = path in self._facts.lost and is_in_home(stated.strip())
+        if moved or (found and re.fullmatch(r"\w+", name)):
+            name = "" if moved else name
             self._facts.unfound.append(Unfound(controller=name, file=path, origin=node.origin))
 
     def _space(self, node: Node) -> str:

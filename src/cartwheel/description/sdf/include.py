@@ -128,7 +128,7 @@ def _file(uri: Node, ctx: Context) -> Path:
         found = _fuel_model(name, uri, ctx)
     else:
         try:
-            found = ctx.packages.resolve(text, uri.origin, what="model", folder=True)
+            found = ctx.packages.resolve(text, uri.origin, what="model", folder=True, use="model")
         except DescriptionError as error:
             plain = text.removeprefix("file://")
             try:
@@ -142,7 +142,7 @@ def _file(uri: Node, ctx: Context) -> Path:
 def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
     """The model downloaded by Gazebo; otherwise a local model with the same name."""
     with contextlib.suppress(DescriptionError):
-        return ctx.packages.resolve(uri.text, uri.origin, what="model", folder=True)
+        return ctx.packages.resolve(uri.text, uri.origin, what="model", folder=True, use="model")
     for spelling in dict.fromkeys((name, name.lower(), name.lower().replace(" ", "_"))):
         try:
             return ctx.packages.find_model(spelling, uri.origin)

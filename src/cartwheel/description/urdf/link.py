@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from cartwheel.codes import tags
 from cartwheel.description.elements.xml import Node
+from cartwheel.description.files.other_places import Use
 from cartwheel.description.losses import loss
 from cartwheel.description.meshes import check_mesh
 from cartwheel.description.model import (
@@ -215,7 +216,8 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
             raise node.fail(
                 f'the scale of a mesh of link "{link}" has a component of 0 (got {_listed(scale)})'
             )
-        path = ctx.packages.resolve(uri, node.origin, what="mesh")
+        use: Use = "collision" if kind == "collision" else ""
+        path = ctx.packages.resolve(uri, node.origin, what="mesh", use=use)
         mesh = Mesh(uri=uri, path=path, scale=scale)
         check_mesh(mesh, origin=node.origin)
     except DescriptionError as error:

@@ -85,7 +85,10 @@ def replace_functions(module: ModuleType, run: Run) -> None:
             return str(path)
         found = source_of(Path(path))
         if not found.exists():
-            found = run.packages.elsewhere(given, run.origin(), without=active()) or found
+            found = (
+                run.packages.elsewhere(given, run.origin(), without=active(), use="include")
+                or found
+            )
         return str(found)
 
     def process_include(

@@ -392,7 +392,8 @@ def moved_file(text: str, origin: Origin) -> tuple[Path | None, list[Diagnostic]
     The file is None if there is none in the package of the description.
     """
     packages = Packages(None if _is_from_service(origin) else Path(origin.file))
-    return packages.elsewhere(text.strip(), origin), list(packages.moves())
+    found = packages.elsewhere(text.strip(), origin, use="controllers")
+    return found, list(packages.moves())
 
 
 def why_missing(text: str, origin: Origin) -> tuple[str, str]:

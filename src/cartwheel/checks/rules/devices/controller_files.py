@@ -15,6 +15,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.elements.xml import shown_path
+from cartwheel.description.files.other_places import report
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.remappings import namespace_of
 from cartwheel.dialects.ros2_control.contents import without_controllers
@@ -40,8 +41,15 @@ def controllers_file(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         for element in named_files(robot):
             path = resolved(subject.packages, element)
+            moved = subject.packages.found_elsewhere.get(element.text.strip())
             if isinstance(path, Diagnostic):
                 yield path
+            elif moved is not None and moved.use == "controllers":
+                yield replace(
+                    report(element.text.strip(), moved),
+                    origin=element.origin,
+                    mark=element.text.strip(),
+                )
     for _, file in subject.control:
         if file.problem is not None:
             yield file.problem

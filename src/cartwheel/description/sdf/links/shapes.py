@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cartwheel.codes import files, tags
 from cartwheel.description.elements.xml import Node
+from cartwheel.description.files.other_places import Use
 from cartwheel.description.losses import loss
 from cartwheel.description.meshes import MeshError, check_mesh
 from cartwheel.description.model import (
@@ -78,7 +79,7 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
         return None
     if tag in ("mesh", "heightmap"):
         try:
-            return _mesh(node, ctx) if tag == "mesh" else _heightmap(node, ctx)
+            return _mesh(node, owner, ctx) if tag == "mesh" else _heightmap(node, ctx)
         except _UnusableFileError as missing:
             node.mark()
             ctx.report(
@@ -204,7 +205,7 @@ def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
     return shape
 
 
-def _mesh(node: Node, ctx: Context) -> Mesh:
+def _mesh(node: Node, owner: Node, ctx: Context) -> Mesh:
     uri = node.child("uri") or node.child("filename")
     if uri is None or not uri.text.strip():
         raise node.fail(
@@ -235,7 +236,8 @@ def _mesh(node: Node, ctx: Context) -> Mesh:
     submesh = node.child("submesh")
     optimization = node.get("optimization") or ""
     try:
-        path = ctx.packages.resolve(uri.text, uri.origin, what="mesh")
+        use: Use = "collision" if owner.tag == "collision" else ""
+        path = ctx.packages.resolve(uri.text, uri.origin, what="mesh", use=use)
     except DescriptionError as error:
         raise _UnusableFileError.of(error, uri.origin) from error
     shape = Mesh(

@@ -57,9 +57,22 @@ def unfound(starter: LaunchUse | None) -> Iterator[Diagnostic]:
     """The missing files with the parameters of the controllers that a launch file starts."""
     if starter is None:
         return
-    started = {name.rpartition("/")[2] for name in starter.spawned}
+    started = {name.rpartition("/")[2]: None for name in starter.spawned}
     for each in starter.unfound:
-        if each.controller in started:
+        if started and not each.controller:
+            yield CONTROLLERS_FILE_UNREADABLE.diagnostic(
+                f'the controller file "{each.file}" is in a home folder, so on other computers no '
+                "controller starts",
+                origin=each.origin,
+                values={
+                    "file": str(each.file),
+                    "controllers": tuple(started),
+                    "needed_for": "controllers",
+                },
+                hint="roslaunch stops at the <rosparam>. Write $(find PACKAGE)/config/"
+                f"{each.file.name}, with the name of your package.",
+            )
+        elif each.controller in started:
             yield CONTROLLERS_FILE_UNREADABLE.diagnostic(
                 f'the controller file "{each.file}" does not exist, so the controller '
                 f'"{each.controller}" does not start',
