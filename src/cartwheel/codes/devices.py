@@ -339,3 +339,9 @@ PLUGIN_OF_OTHER_GAZEBO = Code(
     "warning",
     "a plugin exists only in the Gazebo in which the robot is not started",
 )
+CONTROLLER_PARAMETER_TYPE = Code(
+    "CW497",
+    "controller-parameter-type",
+    "error",
+    "a parameter of ROS 2 has a value of another type, which ROS 2 does not convert",
+)

@@ -34,6 +34,7 @@ from cartwheel.corpus.missing_movers import (
     is_started,
     is_unmanaged,
     missing_movers,
+    refused_controllers,
     stopped_managers,
     unmanaged_controllers,
     unmanaged_hardware,
@@ -147,6 +148,7 @@ def _faults(
         # What is driven here instead does not matter.
         instead = (devices.HARDWARE_NOT_SIMULATED, devices.HARDWARE_UNKNOWN)
         missing = {name: fault for name, fault in missing.items() if fault.code not in instead}
+    missing |= refused_controllers(verdict)
     stopped_ones = {each.subject: each for each in stopped_managers(verdict, description)}
     if stopped_ones:
         # Which of its controllers would not start does not matter.

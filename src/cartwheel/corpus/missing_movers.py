@@ -99,6 +99,20 @@ def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterato
             yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 
 
+def refused_controllers(verdict: Verdict) -> dict[str, Fault]:
+    """Controllers that ROS 2 does not start because of the type of a parameter, by name.
+
+    Cartwheel converts the parameter and starts them.
+    """
+    found: dict[str, Fault] = {}
+    for each in verdict.diagnostics:
+        name = str(each.values.get("controller", ""))
+        if each.code is devices.CONTROLLER_PARAMETER_TYPE and is_started(name, verdict):
+            found.setdefault(name, Fault(test="controller", subject=name, reason=each))
+    found.pop("", None)
+    return found
+
+
 def missing_movers(
     verdict: Verdict,
     description: RobotDescription,
@@ -350,8 +364,10 @@ def held_bases(
 
 def is_unmanaged(controller: str, verdict: Verdict, description: RobotDescription) -> bool:
     """Whether Gazebo does not run a controller that was tested, because its manager exists only for
-    another Gazebo or version of ROS.
+    another Gazebo or version of ROS, or because a parameter has the wrong type.
     """
+    if controller in refused_controllers(verdict):
+        return True
     tags = managers(description) if controller in verdict.controllers else []
     return bool(tags) and all(not_loaded(description, tag) is not None for tag in tags)
 

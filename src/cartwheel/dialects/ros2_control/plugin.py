@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -14,11 +15,14 @@ from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros2_control.components import HardwareComponents
 from cartwheel.dialects.ros2_control.contents import without_controllers
+from cartwheel.dialects.ros2_control.mistyped import mistyped, mistyped_manager
+from cartwheel.dialects.ros2_control.refused_files import refused_file
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
+    ControllerEntry,
     ControllerFiles,
     controller_entries,
     moved_file,
@@ -116,6 +120,13 @@ class Ros2Control(ControlPlugin):
         lost = without_controllers(merged, files_read, place, self.tag.origin)
         if lost is not None:
             part.report(lost)
+        else:
+            for path in paths:
+                refused = files.known(
+                    part.description, ("refused", path), partial(refused_file, path)
+                )
+                if refused is not None:
+                    part.report(refused)
         settings = Settings(merged.manager, config.manager, source)
         rate = settings.number("update_rate", 100.0)
         if rate <= 0:
@@ -143,6 +154,10 @@ class Ros2Control(ControlPlugin):
                     values={"name": sensor.name},
                 )
         entries = controller_entries(merged, self.namespace, source)
+        for finding in mistyped_manager(config.manager, merged.manager, paths):
+            part.report(finding)
+        for entry in files.wanted(entries):
+            self._report_mistyped(entry, paths)
         # In Gazebo Classic, it sets the velocity of a joint without a motor.
         forced = short_name(self.tag.filename) == "gazebo_ros2_control"
         hardware = Hardware(self, joints, _gains(joints, merged.nodes), forced=forced)
@@ -164,7 +179,14 @@ class Ros2Control(ControlPlugin):
             name=config.manager,
             entries=entries,
             components=HardwareComponents(simulated_systems(part.description), joints, sensors),
+            check=lambda entry, more: self._report_mistyped(entry, [*paths, *more]),
         )
+
+    def _report_mistyped(self, entry: ControllerEntry, paths: Sequence[Path]) -> None:
+        """Reports the parameters for which ROS 2 does not start a controller."""
+        classic = short_name(self.tag.filename) == "gazebo_ros2_control"
+        for finding in mistyped(entry, paths, classic=classic):
+            self.part.report(finding)
 
     def _path(self, text: str) -> Path | None:
         """Returns the file in a ``<parameters>`` tag; None, with a report, if it does not exist."""

@@ -45,6 +45,8 @@ class Ros2ManagerServices(ManagerServices):
         name: Name of the manager's node.
         entries: The controllers in the robot's files.
         components: The hardware components.
+        check: Reports the parameters of a controller that ROS 2 refuses, with the files in which
+            they are, besides those of the robot.
     """
 
     package = _MESSAGES
@@ -58,8 +60,10 @@ class Ros2ManagerServices(ManagerServices):
         name: str,
         entries: Sequence[ControllerEntry],
         components: HardwareComponents,
+        check: Callable[[ControllerEntry, Sequence[Path]], None],
     ) -> None:
         super().__init__(manager, name)
+        self._check = check
         self._components = components
         self._entries = {entry.name: entry for entry in entries}
         self._by_itself = {each.name for each in manager.controllers}
@@ -153,8 +157,7 @@ class Ros2ManagerServices(ManagerServices):
             entry = ControllerEntry(
                 name=name, type="", values={}, namespace=namespace, source="parameters"
             )
-        files = stated.get("params_file", [])
-        paths = [Path(each) for each in ([files] if isinstance(files, str) else files)]
+        paths = self._param_files(name)
         if paths:
             robot = self._manager.robot.plugin.part.description
             contents = [read_ros2(path, robot) for path in paths]
@@ -174,13 +177,20 @@ class Ros2ManagerServices(ManagerServices):
         renamed = remappings(stated.get("node_options_args", []))
         return replace(entry, type=kind, remappings={**entry.remappings, **renamed})
 
+    def _param_files(self, name: str) -> list[Path]:
+        """The files that the spawner gives to a controller."""
+        files = self._parameters.below(name).get("params_file", [])
+        return [Path(each) for each in ([files] if isinstance(files, str) else files)]
+
     def _configure(self, request: Any) -> None:
         name = request.name
         controller = self._manager.find(name)
         if controller is None:
             if name not in self._unconfigured:
                 raise wrong_state(name, "is not loaded")
-            self._manager.load_entry(self._unconfigured[name])
+            entry = self._unconfigured[name]
+            self._check(entry, self._param_files(name))
+            self._manager.load_entry(entry)
             del self._unconfigured[name]
         elif name in self._by_itself:
             self._by_itself.discard(name)

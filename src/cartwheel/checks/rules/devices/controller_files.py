@@ -17,8 +17,11 @@ from cartwheel.codes import devices as devices_codes
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.other_places import report
 from cartwheel.description.model import PluginTag
+from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.remappings import namespace_of
 from cartwheel.dialects.ros2_control.contents import without_controllers
+from cartwheel.dialects.ros2_control.mistyped import mistyped, mistyped_manager
+from cartwheel.dialects.ros2_control.refused_files import refused_file
 from cartwheel.dialects.ros_control.catalogue import find_type
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
@@ -88,12 +91,27 @@ def _unusable(
     name = next((each.text.strip() for each in stated if each is not None), "controller_manager")
     merged = ros2_file([content for _, content in contents], space.strip(), name)
     place = f"{space.strip().strip('/')}/{name}"
-    found = without_controllers(merged, contents, place, tag.origin)
+    lost = without_controllers(merged, contents, place, tag.origin)
     spawned = subject.launch.spaces if subject.launch is not None else frozenset[str]()
-    if found is not None and (not merged.elsewhere or spawned <= {""}):
-        yield found
+    if lost is not None and (not merged.elsewhere or spawned <= {""}):
+        yield lost
+    if lost is None:
+        for file in files:
+            refused = refused_file(file.path)
+            if refused is not None:
+                yield replace(refused, severity=severity_in(file))
     source = ", ".join(shown_path(path) for path, _ in contents)
-    yield from _invalid(subject, robot, controller_entries(merged, "", source), files)
+    entries = controller_entries(merged, "", source)
+    yield from _invalid(subject, robot, entries, files)
+    if files:
+        paths = [path for path, _ in contents]
+        classic = short_name(tag.filename) == "gazebo_ros2_control"
+        severity = severity_in(files[0])
+        for found in mistyped_manager(name, merged.manager, paths):
+            yield replace(found, severity=severity)
+        for entry in _started(subject, robot, entries):
+            for found in mistyped(entry, paths, classic=classic):
+                yield replace(found, severity=severity)
 
 
 def _invalid(
@@ -103,10 +121,7 @@ def _invalid(
     files: Sequence[ControlFile],
 ) -> Iterator[Diagnostic]:
     """Parameters for which controllers do not start, of those that a launch file starts."""
-    names = {name for owner, each in subject.launched if owner is robot for name in each.names}
-    for entry in entries:
-        if names and entry.name not in names:
-            continue
+    for entry in _started(subject, robot, entries):
         settings = entry.settings()
         ros2 = any(file.is_ros2 for file in files)
         try:
@@ -126,6 +141,14 @@ def _invalid(
             )
             value = next(values, None)
             yield found if value is None else replace(found, origin=value.origin, mark=value.text)
+
+
+def _started(
+    subject: Subject, robot: Robot, entries: Sequence[ControllerEntry]
+) -> list[ControllerEntry]:
+    """The controllers that a launch file starts, or all of them if none does."""
+    names = {name for owner, each in subject.launched if owner is robot for name in each.names}
+    return [entry for entry in entries if not names or entry.name in names]
 
 
 def _of_ros1(robot: Robot, files: Sequence[ControlFile]) -> Iterator[Diagnostic]:
