@@ -266,3 +266,66 @@ def test_an_unsupported_plugin_is_only_a_note_if_everything_is_moved_as_commande
     verdict = try_robot(path, standing=1.0)
     assert verdict.missing[0] == "motor_stream"
     assert verdict.outcome == outcome
+
+
+BUILT = """cmake_minimum_required(VERSION 3.5)
+project(own)
+set(FILES src/thing.cc)  # The source.
+add_library(${PROJECT_NAME}_thing SHARED ${FILES})
+"""
+
+
+def in_package(folder, source: str) -> None:
+    """Writes a package that builds the plugin ``libown_thing.so`` from a source file."""
+    (folder / "package.xml").write_text("<package><name>own</name></package>")
+    (folder / "CMakeLists.txt").write_text(BUILT)
+    (folder / "src").mkdir()
+    (folder / "src" / "thing.cc").write_text('#include "own/thing.hh"\n' + source)
+    (folder / "include" / "own").mkdir(parents=True)
+
+
+@pytest.mark.parametrize(
+    ("source", "moves"),
+    [
+        ("this->link->AddRelativeForce({0, 0, this->thrust});", True),
+        ("joints[0]->SetVelocity (0, speed);", True),
+        ("wheel->SetPosition(0, angle);", True),
+        ("_ecm.Component<components::JointForceCmd>(wheel);", True),
+        ("// this->link->AddRelativeForce(thrust);\npublisher->publish(pose);", False),
+        ("wheel->SetVelocityLimit(0, 5); link->WorldPose();", False),
+    ],
+    ids=["force", "velocity", "position", "component", "comment", "reading"],
+)
+def test_a_plugin_whose_source_applies_forces_may_be_what_moves_a_model(tmp_path, source, moves):
+    """Neither its name nor its tags say it, and the model has no joints."""
+    in_package(tmp_path, f"void Thing::OnUpdate() {{ {source}\n}}")
+    box = cart().split('<link name="left">', 1)[0]
+    verdict = try_robot(written(tmp_path, box, OTHER.format("libown_thing.so")), standing=1.0)
+    assert [each.code for each in verdict.faults] == [PLUGIN_UNKNOWN] * moves
+    assert verdict.outcome == ("unknown" if moves else "good")
+    assert verdict.should_move == moves
+
+
+def test_the_headers_of_a_plugin_are_part_of_its_source(tmp_path):
+    in_package(tmp_path, "")
+    header = tmp_path / "include" / "own" / "thing.hh"
+    header.write_text("void Push() { this->model->SetLinearVel(speed); }")
+    box = cart().split('<link name="left">', 1)[0]
+    path = written(tmp_path, box, OTHER.format("libown_thing.so"))
+    assert try_robot(path, standing=1.0).outcome == "unknown"
+    header.write_text("")
+    assert try_robot(path, standing=1.0).good
+
+
+def test_a_plugin_whose_source_applies_forces_is_no_fault_if_a_drive_moves_the_robot(tmp_path):
+    """It may brake the robot, although nothing drives a hatch of the robot."""
+    in_package(tmp_path, "void Thing::OnUpdate() { link->AddForce(drag); }")
+    hatch = (
+        '<link name="hatch"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"'
+        '/></inertial></link><joint name="hinge" type="revolute"><parent link="base"/><child '
+        'link="hatch"/><limit lower="-1" upper="1" effort="5" velocity="2"/></joint>'
+    )
+    path = written(tmp_path, cart(), hatch, plugin(), OTHER.format("libown_thing.so"))
+    verdict = try_robot(path, standing=1.0)
+    assert verdict.good
+    assert verdict.missing == ("own_thing",)

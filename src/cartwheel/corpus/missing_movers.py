@@ -16,6 +16,7 @@ from cartwheel.corpus.movers import (
     is_own_mover,
     managers,
     moving_plugins,
+    named_movers,
 )
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
@@ -130,6 +131,8 @@ def missing_movers(
     """
     said = verdict.diagnostics
     all_moves = verdict.passes and _is_all_driven(verdict, description)
+    named = named_movers(description)
+    moved = _is_moved(verdict, description)
     for tag in moving_plugins(description):
         unloaded = not_loaded(description, tag)
         if unloaded is not None and unloaded.severity == "info":
@@ -144,12 +147,13 @@ def missing_movers(
                 if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
                 and each.values.get("plugin") == tag.filename
             )
-        elif all_moves and not is_own_mover(tag):
+        elif (all_moves and not is_own_mover(tag)) or (moved and tag not in named):
             # The report lists it among the missing plugins.
             continue
         else:
+            although = "" if tag in named else ", although its source moves a model"
             reason = devices.PLUGIN_UNKNOWN.diagnostic(
-                f'plugin "{tag.filename}" is not supported, so it has no effect',
+                f'plugin "{tag.filename}" is not supported, so it has no effect{although}',
                 severity="warning",
                 origin=tag.origin,
                 values={"name": tag.filename},
@@ -253,12 +257,29 @@ def _not_started(
     )
 
 
-def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:
-    """Whether supported plugins and controllers drive all joints, and the base if it can move.
-
-    Joints whose limits leave no room do not count, such as those by which sensors are attached.
+def _is_moved(verdict: Verdict, description: RobotDescription) -> bool:
+    """Whether supported plugins and controllers move the base, or the joints if the base is held or
+    they drive all of them.
     """
-    movable = {
+    if verdict.drives or verdict.flights:
+        return True
+    held = verdict.stand is not None and verdict.stand.fixed
+    commanded = bool(verdict.reaches or verdict.spins)
+    return commanded and (held or _movable(description) <= verdict.driven)
+
+
+def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:
+    """Whether supported plugins and controllers drive all joints, and the base if it can move."""
+    held = verdict.stand is not None and verdict.stand.fixed
+    driven = _movable(description) <= verdict.driven
+    return driven and (held or bool(verdict.drives or verdict.flights))
+
+
+def _movable(description: RobotDescription) -> set[str]:
+    """The joints that can move: not those whose limits leave no room, such as those by which
+    sensors are attached.
+    """
+    return {
         each.name
         for each in description.joints
         if each.type != "fixed"
@@ -268,8 +289,6 @@ def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:
             and each.axis.upper <= each.axis.lower
         )
     }
-    held = verdict.stand is not None and verdict.stand.fixed
-    return movable <= verdict.driven and (held or bool(verdict.drives or verdict.flights))
 
 
 def _lost_mover(verdict: Verdict, description: RobotDescription) -> Fault | None:

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Set
+from pathlib import Path
 
 from cartwheel.codes import robot as robot_codes
 from cartwheel.codes.files import INCLUDE_ABSENT, MACRO_ABSENT
 from cartwheel.codes.tags import TAG_IGNORED
 from cartwheel.corpus.faults import coded
 from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.files.library_sources import library_sources
+from cartwheel.description.files.repositories import repository_of, root_of
 from cartwheel.description.kinematics import carried
 from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import OF_FETCH, plugin_named, short_name
@@ -45,6 +48,18 @@ _COMMANDS = re.compile(
 """Names of the tags of unsupported plugins that move something."""
 _ROUTE = re.compile(r"^(?:path|route)(?:_?points)?$", re.IGNORECASE)
 """Names of tags that contain the points of a route; those of a file contain its name."""
+_ACTS = re.compile(
+    r"(?:->|\.)\s*(?:Set(?:Link|Joint)?(?:Relative|World)?(?:Pose|Twist)(?:Cmd)?"
+    r"|(?:Set|Add)(?:Link|World|Relative)?(?:Force|Torque|Wrench)"
+    r"(?:At(?:World|Relative)Position|InInertialFrame)?"
+    r"|Set(?:Linear|Angular)?(?:Vel|Velocity|Accel)(?:Target|Cmd)?"
+    r"|Set(?:Joint)?Positions?Target|SetJointPositions?|ResetPosition|ResetVelocity)\s*\("
+    r"|(?:->|\.)\s*SetPosition\s*\(\s*\d"
+    r"|\b(?:Joint(?:Velocity|Force)Cmd|(?:Linear|Angular)VelocityCmd|WorldPoseCmd"
+    r"|ExternalWorldWrenchCmd|Joint(?:Position|Velocity)Reset)\b"
+)
+"""Calls of Gazebo Classic's and gz-sim's C++ interfaces, and components, that move something."""
+_CPP_COMMENT = re.compile(r"//[^\n]*")
 STEERED = re.compile(r"ackerman|(?<!skid)(?<!skid[-_])steer|tricycle|bicycle", re.IGNORECASE)
 """Names of plugins and types of controllers for bases that cannot turn in place."""
 LEFT_OUT = frozenset({INCLUDE_ABSENT, MACRO_ABSENT})
@@ -62,7 +77,15 @@ def movers(verdict: Verdict, robot: RobotDescription) -> list[str]:
 
 
 def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
-    """Plugins that should move the robot or its joints, without controller managers.
+    """Plugins that should move the robot or its joints, without controller managers: those of
+    `named_movers`, and unsupported ones whose source `applies` forces or velocities.
+    """
+    named = named_movers(robot)
+    return [tag for tag in robot.plugins if tag in named or applies(tag)]
+
+
+def named_movers(robot: RobotDescription) -> list[PluginTag]:
+    """Plugins that should move the robot or its joints by their names and tags.
 
     An unsupported plugin also counts if its tags contain the name of a movable joint, if a tag is
     named after gains, forces, motors, velocity commands or trajectories, if its own name contains a
@@ -87,6 +110,20 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
             )
         )
     ]
+
+
+def applies(tag: PluginTag) -> bool:
+    """Whether the source of an unsupported plugin, in the repository of the file with its tag,
+    applies forces, velocities or poses.
+    """
+    name = short_name(tag.filename)
+    if is_known(tag) or name in WITHOUT_EFFECT or _MANAGER.search(name) or _RECORDS.search(name):
+        return False
+    file = Path(tag.origin.file)
+    folder = repository_of(file) or root_of(file)
+    return folder is not None and any(
+        _ACTS.search(_CPP_COMMENT.sub("", text)) for text in library_sources(name, folder)
+    )
 
 
 def is_mover(filename: str) -> bool:
