@@ -272,7 +272,9 @@ def _show_faults(verdict: Verdict) -> None:
     say(f"\n{paint(name, 'bold')}: {_OUTCOMES[verdict.outcome]}")
     if verdict.launch is not None and verdict.launch.arguments:
         given = " ".join(f"{key}:={text}" for key, text in verdict.launch.arguments.items())
-        say(paint(f"  with the arguments in {shown_path(verdict.launch.file)}: {given}", "dim"))
+        switched = "".join(f" {name}:={value}" for name, value in verdict.launch.switched)
+        place = f"{shown_path(verdict.launch.file)}{switched}"
+        say(paint(f"  with the arguments in {place}: {given}", "dim"))
     for fault in verdict.faults:
         subject = f" {fault.subject}" if fault.subject else ""
         say(f"  {fault.test}{subject}: {fault.reason or 'unknown reason'}")

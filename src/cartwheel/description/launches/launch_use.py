@@ -32,6 +32,9 @@ class LaunchUse:
     """The description; None if the launch file only starts controllers."""
     arguments: Mapping[str, str]
     """Arguments of the xacro whose values are known."""
+    switched: tuple[tuple[str, str], ...] = ()
+    """The arguments of the launch file itself that have another value than their default, because
+    it only then starts Gazebo."""
     plain: Origin | None = None
     """Where it passes the text of the description without expanding it; None if it does not."""
     raw: bool = False

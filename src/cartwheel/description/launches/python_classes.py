@@ -73,6 +73,9 @@ class Classes:
             self.facts.required[self.path, name] = origin
         if not self._depth and name not in self._given and name in self.defaults:
             self.facts.defaults[name] = joined(self.defaults[name])
+            choices = words.get("choices")
+            if isinstance(choices, list):
+                self.facts.choices[name] = tuple(map(joined, choices))
         return NOTHING
 
     def setting(self, first: Any, places: list[Any], words: dict[str, Any]) -> Any:

@@ -183,6 +183,7 @@ class _Reader:
         """Evaluates the branches that may be executed, each with the variables before them."""
         holds = self._holds(node.test)
         if holds is not None:
+            self._facts.leaves_out = True
             return self.block(node.body if holds else node.orelse)
         before = self._names
         first, last = before.within({}), before.within({})
@@ -354,6 +355,7 @@ class _Reader:
     def _conditional(self, node: ast.IfExp) -> Any:
         """The value of ``a if condition else b``: a if the condition is unknown, which is noted."""
         holds = self._holds(node.test)
+        self._facts.leaves_out |= holds is not None
         if holds is None:
             place = Place(self._path, node.lineno, node.col_offset)
             holds = place not in self._facts.reversed
@@ -402,6 +404,7 @@ class _Reader:
             holder = self.value(node.func.value)
         conditions = [each.value for each in node.keywords if each.arg == "condition"]
         if any(self.value(each) is False for each in conditions):
+            self._facts.leaves_out = True
             self._skip(node)
             return NOTHING  # the action is not executed, nor are those in it
         space = self._facts.namespace

@@ -6,6 +6,7 @@ import itertools
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.codes.files import LAUNCH_VALUE_UNKNOWN
@@ -33,6 +34,10 @@ _VARIANTS = 20
 """Maximum number of other values of its arguments with which a launch file is read."""
 _TRIED = 100
 """Maximum number of its arguments for which the folder of a description is searched."""
+_SWITCHES = 12
+"""Maximum number of other values with which a launch file that starts no Gazebo is read."""
+_OPPOSITES = {"true": "false", "True": "False", "1": "0"}
+_OPPOSITES |= {value: key for key, value in _OPPOSITES.items()}
 _PUBLISHER = re.compile(r"state|broad", re.IGNORECASE)
 """Part of the names of controllers that only publish, such as ``joint_state_controller``."""
 
@@ -104,6 +109,29 @@ def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]
         other.descriptions = [other.descriptions[number] for number in new]
         if new:
             yield from uses_of(path, other, given.values())
+    if facts.leaves_out and not facts.simulated:
+        yield from _simulating(path, packages, facts, effort)
+
+
+def _simulating(
+    path: Path, packages: Packages, facts: Facts, effort: Effort
+) -> Iterator[LaunchUse]:
+    """What a launch file starts with another value of an argument, with which it starts Gazebo.
+
+    Many launch files start the real robot, unless an argument such as ``use_sim`` is true.
+    """
+    switches = (
+        {name: other}
+        for name, value in facts.defaults.items()
+        for other in facts.choices.get(name) or (_OPPOSITES.get(value, value),)
+        if other != value and UNKNOWN not in other
+    )
+    for given in itertools.islice(switches, _SWITCHES):
+        other = facts_of(path, packages, given, effort)
+        if other.simulated and other.descriptions:
+            for use in uses_of(path, other):
+                yield replace(use, switched=tuple(given.items()))
+            return
 
 
 def facts_of(
@@ -209,8 +237,8 @@ def _is_whole(name: str, words: Collection[str]) -> bool:
 def chosen(description: Path, uses: Iterable[LaunchUse]) -> LaunchUse | None:
     """The launch file for a description: one that starts Gazebo and controllers, if there is one.
 
-    One that starts more than the publisher of joint states comes first. Among equal ones it is the
-    first by the number of unknown arguments and by path.
+    One that starts Gazebo with its default arguments, and more than the publisher of joint states,
+    comes first. Among equal ones it is the first by the number of unknown arguments and by path.
     """
     path = description.resolve()
     own = [
@@ -253,9 +281,10 @@ def starters(
     return [each for _, each in others]
 
 
-def _order(use: LaunchUse) -> tuple[bool, bool, int, bool, int, int, str]:
+def _order(use: LaunchUse) -> tuple[bool, bool, bool, int, bool, int, int, str]:
     return (
         not use.simulated,
+        bool(use.switched),
         # Another launch file may include it and state the argument.
         use.lacking,
         # A file may be loaded without a controller in it being started.

@@ -134,6 +134,10 @@ class Facts:
     """The included launch files with the arguments that they receive."""
     defaults: dict[str, str] = field(default_factory=dict)
     """The arguments of the launch file itself that have their default, such as the robot's type."""
+    choices: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """Their values that are stated to be valid."""
+    leaves_out: bool = False
+    """Whether a condition that does not hold leaves out a part."""
 
     @contextlib.contextmanager
     def within(self, space: str) -> Iterator[None]:

@@ -159,6 +159,10 @@ class _Reader:
             self._arguments[name] = self._value(node, "default")
             if not self._depth:
                 self._facts.defaults[name] = self._arguments[name]
+                choices = [each for each in node.children if each.tag == "choice"]
+                if choices:
+                    values = (each.attributes.get("value", "") for each in choices)
+                    self._facts.choices[name] = tuple(values)
         elif name not in self._arguments:
             self._facts.required[self._path, name] = node.origin
 
@@ -192,6 +196,7 @@ class _Reader:
             if name in node.attributes:
                 value = self._value(node, name).strip()
                 if UNKNOWN not in value and (value not in _FALSE) is not wanted:
+                    self._facts.leaves_out = True
                     return False
         return True
 
