@@ -26,14 +26,13 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.launches import (
     LaunchSearch,
     OwnLaunches,
-    in_simulator,
     needs_expansion,
     unexpanded,
     unread,
 )
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.dialects.gz.gazebo_only import gazebo_of, other_gazebo
+from cartwheel.dialects.gz.gazebo_only import as_launched, gazebo_of, other_gazebo
 from cartwheel.dialects.ros_control.selection import Selection
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
@@ -100,7 +99,7 @@ def check(
         return Report(file=opened.files[0], name=name, findings=(), complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
         understand(opened)  # raises an error that says what the file contains
-    subject = _subject(opened, controller_files, launches, selected)
+    subject = _subject(opened, arguments or {}, controller_files, launches, selected)
     # Numbers near the largest float overflow; rules report nothing about non-finite results.
     with np.errstate(all="ignore"):
         findings = _distinct(
@@ -127,6 +126,7 @@ def check(
 
 def _subject(
     opened: Opened,
+    arguments: Mapping[str, str],
     given: Sequence[Path],
     launches: Callable[[Path], OwnLaunches] | None,
     selected: Selection | None,
@@ -155,7 +155,8 @@ def _subject(
     if isinstance(read, RobotDescription) and any(
         gazebo_of(tag.filename) for tag in read.all_plugins
     ):
-        read = in_simulator(read, file, search(file).launches)
+        path = opened.packages.package_path
+        read = as_launched(read, file, search(file).launches, arguments, path)
         described = (read,)
     root = opened.root if opened.root.tag == "robot" else None
     unseen: set[str] = set()

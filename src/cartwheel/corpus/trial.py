@@ -40,7 +40,6 @@ from cartwheel.description.launches import (
     LaunchSearch,
     LaunchUse,
     chosen,
-    in_simulator,
     launches_near,
     moves,
     own_launches,
@@ -49,7 +48,7 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
-from cartwheel.dialects.gz.gazebo_only import with_own_plugins
+from cartwheel.dialects.gz.gazebo_only import as_launched, with_own_plugins
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.selection import Selection, selection, with_published_control
 from cartwheel.dialects.ros_control.suggestion import is_controlled
@@ -113,7 +112,8 @@ def try_robot(
                 default = _for_simulation(robot, file, given, package_path)
                 if default is not None:
                     robot, arguments = default, given
-        robot = in_simulator(with_published_control(robot, launches, package_path), file, launches)
+        robot = with_published_control(robot, launches, package_path)
+        robot = as_launched(robot, file, launches, given, package_path)
     except CartwheelError as error:
         reason = error.diagnostic()
         return replace(

@@ -539,6 +539,8 @@ class RobotDescription:
     """The xacro's arguments by name, including defaults."""
     simulator: Simulator = ""
     """The Gazebo in which the launch files of the author start it; empty if it is unknown."""
+    unlaunched: frozenset[str] = frozenset()
+    """File names of its plugins that it has not with the arguments of these launch files."""
     origin: Origin
 
     def link(self, name: str) -> Link | None:

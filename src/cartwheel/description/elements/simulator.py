@@ -15,15 +15,20 @@ _GZ = re.compile(r"^(?:lib)?(?:gz|ign|ignition)[-_]")
 
 def simulator_of(root: Node) -> Simulator:
     """The version of Gazebo that a description has plugins for; empty for none or both."""
+    found = simulators_of(plugin_files(root))
+    return found.pop() if len(found) == 1 else ""
+
+
+def plugin_files(root: Node) -> list[str]:
+    """The file names of the plugins in a description."""
     files, left = [], [root]
     while left:
         node = left.pop()
         if node.tag == "plugin":
-            files.append(node.attributes.get("filename", ""))
+            files.append(node.attributes.get("filename", "").strip())
         else:
             left += node.children
-    found = simulators_of(files)
-    return found.pop() if len(found) == 1 else ""
+    return files
 
 
 def simulators_of(filenames: Iterable[str]) -> set[Simulator]:

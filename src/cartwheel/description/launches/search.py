@@ -35,9 +35,21 @@ _VARIANTS = 20
 _TRIED = 100
 """Maximum number of its arguments for which the folder of a description is searched."""
 _SWITCHES = 12
-"""Maximum number of other values with which a launch file that starts no Gazebo is read."""
-_OPPOSITES = {"true": "false", "True": "False", "1": "0"}
-_OPPOSITES |= {value: key for key, value in _OPPOSITES.items()}
+"""Maximum number of other values of its arguments with which a launch file is read."""
+_GZ = ("ignition", "gz", "ign", "gz_sim")
+_OPPOSITES: Mapping[str, Sequence[str]] = {
+    "true": ("false",),
+    "True": ("False",),
+    "1": ("0",),
+    "false": ("true",),
+    "False": ("True",),
+    "0": ("1",),
+    "classic": _GZ,
+    "gazebo": _GZ,
+    "gazebo_classic": _GZ,
+    **dict.fromkeys(_GZ, ("classic", "gazebo", "gazebo_classic")),
+}
+_SIMULATOR = re.compile(r"gazebo|gz|ign|classic|sim", re.IGNORECASE)
 _PUBLISHER = re.compile(r"state|broad", re.IGNORECASE)
 """Part of the names of controllers that only publish, such as ``joint_state_controller``."""
 
@@ -109,26 +121,27 @@ def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]
         other.descriptions = [other.descriptions[number] for number in new]
         if new:
             yield from uses_of(path, other, given.values())
-    if facts.leaves_out and not facts.simulated:
-        yield from _simulating(path, packages, facts, effort)
+    if facts.leaves_out:
+        yield from _switched(path, packages, facts, effort)
 
 
-def _simulating(
-    path: Path, packages: Packages, facts: Facts, effort: Effort
-) -> Iterator[LaunchUse]:
-    """What a launch file starts with another value of an argument, with which it starts Gazebo.
+def _switched(path: Path, packages: Packages, facts: Facts, effort: Effort) -> Iterator[LaunchUse]:
+    """What a launch file starts with another value of an argument, with which it starts Gazebo, or
+    another Gazebo.
 
     Many launch files start the real robot, unless an argument such as ``use_sim`` is true.
     """
     switches = (
         {name: other}
         for name, value in facts.defaults.items()
-        for other in facts.choices.get(name) or (_OPPOSITES.get(value, value),)
-        if other != value and UNKNOWN not in other
+        for other in (*facts.choices.get(name, ()), *_OPPOSITES.get(value, ()))
+        if other != value and (not facts.simulated or _SIMULATOR.search(f"{name} {value} {other}"))
     )
+    kinds = facts.gazebos.kinds
     for given in itertools.islice(switches, _SWITCHES):
         other = facts_of(path, packages, given, effort)
-        if other.simulated and other.descriptions:
+        new = kinds and other.gazebos.kinds - kinds if facts.simulated else other.simulated
+        if new and other.descriptions:
             for use in uses_of(path, other):
                 yield replace(use, switched=tuple(given.items()))
             return

@@ -6,17 +6,22 @@ Classic's loader of plugins: neither loads a plugin of the other one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from cartwheel.codes.devices import PLUGIN_OF_OTHER_GAZEBO
+from cartwheel.description.elements.simulator import plugin_files
 from cartwheel.description.files.package_folders import is_in_stand_in
+from cartwheel.description.launches import LaunchUse, in_simulator
+from cartwheel.description.loading import open_description
 from cartwheel.description.model import PluginTag, RobotDescription, Sensor, Simulator
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.gz.sensor_tags import RAYS_ON_CPU, SYSTEMS, is_of_gz
 from cartwheel.dialects.ros_only import is_built, other_ros
 from cartwheel.dialects.substitutes import rewritten
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic
 
 _SYSTEMS: Mapping[str, str] = {
     "gz-sim-ackermann-steering-system": "AckermannSteering",
@@ -64,6 +69,8 @@ _DRIVES = frozenset(
 _OF_ROS = "gazebo_ros_"
 """Beginning of the names of gazebo_ros_pkgs' plugins."""
 _SHOWN: Mapping[Simulator, str] = {"classic": "Gazebo Classic", "gz": "gz-sim"}
+_MOST_EXPANDED = 4
+"""Maximum number of arguments of launch files with which a description is expanded."""
 
 
 def gazebo_of(filename: str) -> Simulator:
@@ -74,14 +81,59 @@ def gazebo_of(filename: str) -> Simulator:
     return "classic" if name in _TO_GZ or name.startswith(_OF_ROS) else ""
 
 
+def as_launched(
+    robot: RobotDescription,
+    file: Path,
+    launches: Iterable[LaunchUse],
+    given: Mapping[str, str],
+    package_path: Sequence[Path] = (),
+) -> RobotDescription:
+    """A robot with the Gazebo in which launch files start it.
+
+    Plugins of the other Gazebo are `unlaunched` if the description does not contain them with the
+    arguments of the launch files, such as ``gazebo:=ignition``.
+
+    Args:
+        robot: The robot.
+        file: Its file.
+        launches: The launch files of its author.
+        given: The arguments that the user stated.
+        package_path: Folders to search for packages first.
+    """
+    launches = list(launches)
+    robot = in_simulator(robot, file, launches)
+    others = {
+        tag.filename
+        for tag in robot.all_plugins
+        if robot.simulator and gazebo_of(tag.filename) not in ("", robot.simulator)
+    }
+    path = file.resolve()
+    stated = {
+        tuple(sorted(each.arguments.items()))
+        for each in launches
+        if each.arguments
+        and robot.simulator in each.gazebos
+        and each.description is not None
+        and each.description.resolve() == path
+    }
+    for arguments in itertools.islice(sorted(stated), _MOST_EXPANDED if others else 0):
+        try:
+            opened = open_description(file, {**given, **dict(arguments)}, package_path)
+        except CartwheelError:
+            return robot
+        others.difference_update(plugin_files(opened.root))
+    return replace(robot, unlaunched=frozenset(others if stated else ()))
+
+
 def other_gazebo(
     robot: RobotDescription, tag: PluginTag, sensor: Sensor | None = None
 ) -> Diagnostic | None:
     """The finding that the Gazebo in which launch files start a robot does not load a plugin.
 
     It is an info if the robot also has a plugin for this Gazebo with the same purpose. None if the
-    Gazebo is unknown, if the robot's repository builds a plugin of this name, or if Cartwheel's
-    stand-in for a package contains the plugin.
+    Gazebo is unknown, if the robot's repository builds a plugin of this name, if the robot has the
+    plugin only with other arguments than those of the launch files, or if Cartwheel's stand-in for
+    a package contains the plugin.
 
     Args:
         robot: The robot.
@@ -90,7 +142,9 @@ def other_gazebo(
     """
     own = robot.simulator
     kind = gazebo_of(tag.filename)
-    if not own or kind in ("", own) or is_in_stand_in(tag.origin.file) or is_built(robot, tag):
+    if not own or kind in ("", own) or tag.filename in robot.unlaunched:
+        return None
+    if is_in_stand_in(tag.origin.file) or is_built(robot, tag):
         return None
     replaced = any(_is_alike(tag, other) for other in robot.plugins if _is_for(other, own))
     return PLUGIN_OF_OTHER_GAZEBO.diagnostic(
