@@ -175,3 +175,15 @@ def test_a_spawner_needs_the_namespace_of_the_controller_manager(
     assert [each.values["manager"] for each in found] == [manager] * (manager is not None)
     assert bool(verdict.controllers) == (manager is None)
     assert verdict.outcome == ("good" if manager is None else "file")
+
+
+@pytest.mark.parametrize("joint", ["beam_joint", "other_joint"])
+def test_a_launch_file_whose_controllers_command_another_robot_is_not_about_this_one(arm, joint):
+    """It loads no description, as the launch file of the other robot includes it."""
+    load = LOAD.format("").replace("arm.yaml", "other.yaml")
+    bot = arm({}, control=load + spawner("other"))
+    content = {"other": {"move": MOVE | {"joint": joint}}}
+    (bot.parent / "other.yaml").write_text(yaml.safe_dump(content))
+    verdict = try_robot(bot, standing=0.5)
+    found = [each.values["manager"] for each in verdict.observed if "manager" in each.values]
+    assert found == ["/arm"] * (joint == "beam_joint")

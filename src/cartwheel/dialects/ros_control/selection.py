@@ -42,6 +42,7 @@ from cartwheel.dialects.ros_control.suggestion import (
     is_controlled,
     is_of_ros1,
     lacks_controllers,
+    starter_of,
     suggested,
 )
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
@@ -99,7 +100,7 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     folder = root_of(file)
     launches = () if folder is None else launches_near(folder, package_path)
     use = chosen(file, launches)
-    starter = _starter(file, use, launches)
+    starter = starter_of(robot, use, launches)
     # The user need not start this launch file, and here, the controllers work.
     found = selection(robot, use, launches, tolerant=True) if lacks_controllers(robot) else None
     if found is None or not found.files:
@@ -117,17 +118,11 @@ def launched(robot: RobotDescription) -> tuple[str, ...]:
     file = Path(robot.origin.file)
     folder = root_of(file)
     launches = () if folder is None else launches_near(folder)
-    starter = _starter(file, chosen(file, launches), launches)
+    starter = starter_of(robot, chosen(file, launches), launches)
     if starter is None:
         return ()
     # A name may contain a part of the namespace.
     return tuple(dict.fromkeys((*starter.spawned, *as_named(starter.spawned, ()))))
-
-
-def _starter(file: Path, use: LaunchUse | None, launches: Sequence[LaunchUse]) -> LaunchUse | None:
-    """The launch file that starts a description's controllers."""
-    starts = use is not None and (use.spawned or use.loaded)
-    return use if starts else controllers_for(file, use, launches)
 
 
 def selection(
@@ -173,11 +168,11 @@ def selection(
     names = starter.spawned if starter is not None and (named or not files) else ()
     if not files and not names and is_controlled(robot) and not lacks_controllers(robot):
         # The robot's own tags name the files.
-        own = _starter(Path(robot.origin.file), use, launches)
+        own = starter_of(robot, use, launches)
         names = () if own is None else own.spawned
     names = named_in(names, files, robot)
     lost = unreadable(starter.controllers, names) if starter is not None else ()
-    starting = starter or _starter(Path(robot.origin.file), use, launches)
+    starting = starter or starter_of(robot, use, launches)
     reported = undefined(robot, starting, within) if is_controlled(robot) else ()
     idle = () if starting is None else named_in(starting.loaded, files, robot)
     apart = tuple(misplaced(robot, starting, launches)) if is_of_ros1(robot) else ()

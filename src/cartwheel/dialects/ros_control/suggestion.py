@@ -1,4 +1,4 @@
-"""Controller files to suggest for a robot whose controller manager has none."""
+"""Controller files, and launch files, for a robot whose controller manager has none."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from cartwheel import yaml_text
 from cartwheel.codes.running import CONTROLLERS_NOT_NAMED
 from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.files.source_folders import source_folders
+from cartwheel.description.launches import LaunchUse, controllers_for
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import OF_FETCH, ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.files import (
@@ -27,7 +28,7 @@ from cartwheel.dialects.ros_control.launch_arguments import texts
 from cartwheel.dialects.ros_control.launched.names import ros1_entries
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
 from cartwheel.dialects.tags import roles_of
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 
 _ROS2_CONTROL = "gz_ros2_control-system"
 _TYPES_OF_FETCH = "robot_controllers/"
@@ -35,6 +36,10 @@ _TYPES_OF_FETCH = "robot_controllers/"
 _ARGUMENT = re.compile(r"\$\((?:arg|var)\s+[^()]*\)")
 _BROADCASTS = "joint_state"
 """Part of the types that publish joint states."""
+_PUBLISHES = re.compile(r"joint_state|Broadcaster$|imu_sensor|force_torque_sensor")
+"""Types that command no joint."""
+_JOINTS = re.compile(r"joint|wheel|dof_names")
+"""Names of parameters with the joints that a controller commands."""
 _ARGUMENT_WITH_END = re.compile(_ARGUMENT.pattern + r"([\w/]*)")
 """Also what follows in the same word, or the beginning of it."""
 _LEVELS = 4
@@ -87,6 +92,40 @@ def commanding(robot: RobotDescription, among: Sequence[Path]) -> bool:
     """Whether one of the files contains controllers for a robot's joints."""
     joints = [each.name for each in robot.joints if each.type != "fixed"]
     return any(named for ros2 in (False, True) for _, named in _fitting(among, joints, ros2=ros2))
+
+
+def _commands_others(robot: RobotDescription, among: Sequence[Path]) -> bool:
+    """Whether files contain controllers for joints, but none of them is a joint of the robot."""
+    return any(map(_commands, among)) and not commanding(robot, among)
+
+
+def _commands(path: Path) -> bool:
+    """Whether a file contains a controller for joints."""
+    try:
+        content = read_parameters(path)
+    except PluginError:
+        return False
+    entries = _entries(content, str(path), ros2=is_ros2(content))
+    return any(
+        _PUBLISHES.search(entry.type) is None
+        and any(_JOINTS.search(str(name)) for name in entry.values)
+        for entry in entries
+    )
+
+
+def starter_of(
+    robot: RobotDescription, use: LaunchUse | None, launches: Sequence[LaunchUse]
+) -> LaunchUse | None:
+    """The launch file that starts a robot's controllers.
+
+    One without a description whose controllers command only joints of another robot is none.
+    """
+    if use is not None and (use.spawned or use.loaded):
+        return use
+    found = controllers_for(Path(robot.origin.file), use, launches)
+    if found is None or found is use or not _commands_others(robot, found.controllers):
+        return found
+    return None
 
 
 def is_controlled(robot: RobotDescription) -> bool:
