@@ -63,6 +63,10 @@ class LaunchUse:
     sought: tuple[tuple[str, str], ...] = ()
     """The controllers that spawners of ROS 1 start: the namespace of the manager, and the name in
     it. Those whose namespace is uncertain are left out."""
+    sought_in_ros2: tuple[tuple[str, str], ...] = ()
+    """The same for spawners of ROS 2."""
+    managed: bool = False
+    """Whether it starts a controller manager of ROS 2 outside of Gazebo."""
     places: tuple[tuple[str, Path], ...] = ()
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""

@@ -89,6 +89,10 @@ class Facts:
     """The same files, with the namespace `UNKNOWN` if it is uncertain."""
     sought: list[tuple[str, str]] = field(default_factory=list)
     """See `LaunchUse.sought`."""
+    sought_in_ros2: list[tuple[str, str]] = field(default_factory=list)
+    """See `LaunchUse.sought_in_ros2`."""
+    managed: bool = False
+    """See `LaunchUse.managed`."""
     lost: list[Path] = field(default_factory=list)
     """Such files that do not exist."""
     unfound: list[Unfound] = field(default_factory=list)
@@ -341,7 +345,13 @@ class Facts:
             self.effort.spend(len(words) + len(remappings))
             self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
-            self._control(by_spawner(words, space))
+            command = by_spawner(words, space)
+            self._control(command)
+            # The spawner of Foxy does not use the namespace of its node.
+            unsure = UNKNOWN in space or (executable == "spawner.py" and command.space == space)
+            if not unsure and not any(UNKNOWN in word for word in words):
+                self.sought_in_ros2 += ((command.space, name) for name in command.started)
+        self.managed |= executable == "ros2_control_node"
         if package == "rosservice" and words[:1] == ["call"]:
             self._control(by_service(words[1:]))
 

@@ -9,7 +9,12 @@ from typing import Any
 from cartwheel import yaml_text
 from cartwheel.codes.devices import CONTROLLERS_FILE_WITHOUT_CONTROLLERS
 from cartwheel.description.elements.xml import shown_path
-from cartwheel.dialects.ros_control.files import Ros2File, controller_entries, misspelt_key
+from cartwheel.dialects.ros_control.files import (
+    Ros2File,
+    controller_entries,
+    misspelt_key,
+    ros2_file,
+)
 from cartwheel.errors import Diagnostic, Origin
 
 
@@ -47,6 +52,33 @@ def without_controllers(
         at = Origin(file=shown_path(path), line=next(named, 0))
     return CONTROLLERS_FILE_WITHOUT_CONTROLLERS.diagnostic(
         f"{message}, so no controller starts", origin=at, values={"key": key}
+    )
+
+
+def without_namespace(
+    contents: Sequence[Mapping[str, Any]], namespace: str, manager: str, origin: Origin
+) -> Diagnostic | None:
+    """Why a manager in a namespace finds no controller in the files that its tag names, if they
+    contain controllers for one without a namespace. Cartwheel starts these.
+
+    Args:
+        contents: The contents of the files.
+        namespace: The manager's namespace.
+        manager: Its name.
+        origin: The manager.
+    """
+    space = namespace.strip("/")
+    if not space or controller_entries(ros2_file(contents, space, manager, strict=True), "", ""):
+        return None
+    if not controller_entries(ros2_file(contents, space, manager), "", ""):
+        return None
+    return CONTROLLERS_FILE_WITHOUT_CONTROLLERS.diagnostic(
+        f'the controller files have parameters for "/{manager}", but the controller manager is '
+        f'"/{space}/{manager}", so no controller starts in ROS 2',
+        severity="error",
+        origin=origin,
+        hint=f"Write /**/{manager}: and the same for each controller, or /**: for all nodes.",
+        values={"nodes": (f"/{manager}",), "stops": True},
     )
 
 

@@ -14,7 +14,7 @@ from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros2_control.components import HardwareComponents
-from cartwheel.dialects.ros2_control.contents import without_controllers
+from cartwheel.dialects.ros2_control.contents import without_controllers, without_namespace
 from cartwheel.dialects.ros2_control.mistyped import mistyped, mistyped_manager
 from cartwheel.dialects.ros2_control.refused_files import refused_file
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
@@ -118,6 +118,9 @@ class Ros2Control(ControlPlugin):
         place = f"{self.namespace}/{config.manager}"
         files_read = [*zip(paths, contents, strict=True)]
         lost = without_controllers(merged, files_read, place, self.tag.origin)
+        if lost is None:
+            tagged = [content for path, content in files_read if path in named]
+            lost = without_namespace(tagged, self.namespace, config.manager, self.tag.origin)
         if lost is not None:
             part.report(lost)
         else:

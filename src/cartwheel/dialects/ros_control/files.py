@@ -49,12 +49,15 @@ class ControllerEntry:
     """Remapped topic names: new names by old names."""
     misplaced: frozenset[str] = frozenset()
     """Names of values beside the type, in the manager's parameters, which ROS 2 does not use."""
+    elsewhere: str = ""
+    """A node with the same name in another namespace that has parameters in the file."""
 
     def settings(self) -> Settings:
         """Returns the parameters of the controller."""
         settings = Settings(self.values, self.name, self.source)
         settings.ignore("use_sim_time", *self.shared)
         settings.misplaced = self.misplaced
+        settings.elsewhere = self.elsewhere
         return settings
 
 
@@ -278,7 +281,11 @@ def misspelt_key(content: Mapping[str, Any]) -> str:
 
 
 def ros2_file(
-    contents: Sequence[Mapping[str, Any]], namespace: str, manager: str = "controller_manager"
+    contents: Sequence[Mapping[str, Any]],
+    namespace: str,
+    manager: str = "controller_manager",
+    *,
+    strict: bool = False,
 ) -> Ros2File:
     """Combines the parameters in several files, for the nodes of a namespace. Later files win.
 
@@ -289,6 +296,7 @@ def ros2_file(
         contents: Contents of the files.
         namespace: Namespace of the nodes.
         manager: Name of the controller manager's node.
+        strict: Whether names without a namespace are not those of nodes in one, as in ROS 2.
     """
     shared: dict[str, Any] = {}
     nodes: dict[str, dict[str, Any]] = {}
@@ -298,7 +306,8 @@ def ros2_file(
         for path, values in _ros2_nodes(content, ()):
             *space, name = path
             inside = "/".join(space)
-            if inside and inside != wanted and "**" not in space and "*" not in space:
+            apart = inside != wanted and (bool(inside) or (strict and name not in ("**", "*")))
+            if apart and "**" not in space and "*" not in space:
                 elsewhere.append("/".join(("", *path)))
             elif name in ("**", "*"):
                 merge(shared, _copy(values))
@@ -347,6 +356,7 @@ def controller_entry(file: Ros2File, name: str, namespace: str, source: str) -> 
         shared=tuple(key for key in file.shared if key not in own),
         remappings=remappings(listed.get("node_options_args", [])),
         misplaced=frozenset(map(str, listed)),
+        elsewhere=next((each for each in file.elsewhere if each.endswith(f"/{name}")), ""),
     )
 
 

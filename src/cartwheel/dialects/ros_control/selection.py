@@ -35,6 +35,7 @@ from cartwheel.dialects.ros_control.launched.problems import (
     only_loaded,
     undefined,
     unfound,
+    unmanaged_in_ros2,
     unreadable,
 )
 from cartwheel.dialects.ros_control.suggestion import (
@@ -175,7 +176,8 @@ def selection(
     starting = starter or starter_of(robot, use, launches)
     reported = undefined(robot, starting, within) if is_controlled(robot) else ()
     idle = () if starting is None else named_in(starting.loaded, files, robot)
-    apart = tuple(misplaced(robot, starting, launches)) if is_of_ros1(robot) else ()
+    elsewhere = misplaced if is_of_ros1(robot) else unmanaged_in_ros2
+    apart = tuple(elsewhere(robot, starting, launches)) if is_controlled(robot) else ()
     if apart and not tolerant:
         wrong = named_in(itertools.chain(*map(misplaced_names, apart)), files, robot)
         names = tuple(name for name in names if name not in wrong)

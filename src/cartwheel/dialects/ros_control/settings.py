@@ -38,6 +38,8 @@ class Settings:
         self._prefix = ""
         self.misplaced: frozenset[str] = frozenset()
         """Parameters that the file states among those of the controller manager."""
+        self.elsewhere = ""
+        """A node of the same name in another namespace, whose parameters the file states."""
 
     def has(self, name: str) -> bool:
         """Whether a parameter exists."""
@@ -186,6 +188,9 @@ class Settings:
         if self._prefix + name in self.misplaced:
             hint = "It is among the parameters of the controller manager. Move it to "
             hint += f"{self.name}: ros__parameters."
+        elif self.elsewhere:
+            hint = f'The file has parameters for "{self.elsewhere}", which is another node. Write '
+            hint += f"{self.name}: without a namespace."
         return self.error(
             devices.CONTROLLER_PARAMETER_MISSING,
             f'the parameter "{self._prefix}{name}" is missing',

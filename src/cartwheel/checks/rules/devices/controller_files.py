@@ -19,7 +19,7 @@ from cartwheel.description.files.other_places import report
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.remappings import namespace_of
-from cartwheel.dialects.ros2_control.contents import without_controllers
+from cartwheel.dialects.ros2_control.contents import without_controllers, without_namespace
 from cartwheel.dialects.ros2_control.mistyped import mistyped, mistyped_manager
 from cartwheel.dialects.ros2_control.refused_files import refused_file
 from cartwheel.dialects.ros_control.catalogue import find_type
@@ -92,6 +92,9 @@ def _unusable(
     merged = ros2_file([content for _, content in contents], space.strip(), name)
     place = f"{space.strip().strip('/')}/{name}"
     lost = without_controllers(merged, contents, place, tag.origin)
+    if lost is None and all(file.element is not None for file in files):
+        tagged = [content for _, content in contents]
+        lost = without_namespace(tagged, space.strip(), name, tag.origin)
     spawned = subject.launch.spaces if subject.launch is not None else frozenset[str]()
     if lost is not None and (not merged.elsewhere or spawned <= {""}):
         yield lost

@@ -168,17 +168,36 @@ def misplaced(
         yield _misplaced(starter, file, [*names], f"/{space}", f"/{stated}")
 
 
+def unmanaged_in_ros2(
+    robot: RobotDescription, starter: LaunchUse | None, launches: Sequence[LaunchUse]
+) -> Iterator[Diagnostic]:
+    """Controllers whose spawner of ROS 2 waits for a controller manager in a namespace that has
+    none, in a launch file that starts the robot in Gazebo.
+    """
+    if starter is not None and starter.simulated and not starter.managed:
+        yield from _unmanaged(robot, starter, launches, ros2=True)
+
+
 def _unmanaged(
-    robot: RobotDescription, starter: LaunchUse, launches: Sequence[LaunchUse]
+    robot: RobotDescription,
+    starter: LaunchUse,
+    launches: Sequence[LaunchUse],
+    *,
+    ros2: bool = False,
 ) -> Iterator[Diagnostic]:
     """Controllers whose spawner waits for a controller manager in a namespace that has none."""
-    place = _manager_place(robot, launches)
+    place = _manager_place(robot, launches, ros2=ros2)
     if place is None:
         return
     manager, why = place
-    known = {each for use in launches for each in use.sought if each[0].strip("/") == manager}
+    known = {
+        each
+        for use in launches
+        for each in (use.sought_in_ros2 if ros2 else use.sought)
+        if each[0].strip("/") == manager
+    }
     apart: dict[str, dict[str, None]] = {}
-    for space, name in starter.sought:
+    for space, name in starter.sought_in_ros2 if ros2 else starter.sought:
         is_global = name.startswith(f"{manager}/")
         if space.strip("/") != manager and (manager, name) not in known and not is_global:
             apart.setdefault(space.strip("/"), {})[name] = None
@@ -186,6 +205,8 @@ def _unmanaged(
         listed = ", ".join(f'"{name}"' for name in [*names][:_SHOWN])
         more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
         what = "controller" if len(names) == 1 else "controllers"
+        tag = f"<robotNamespace>/{space}</robotNamespace>"
+        tag = f"<ros><namespace>/{space}</namespace></ros>" if ros2 else tag
         yield CONTROLLER_UNDEFINED.diagnostic(
             f'"{starter.file.name}" starts the {what} {listed}{more} with a controller manager in '
             f'"/{space}", but the robot\'s is in "/{manager}", {why}, so nothing starts them',
@@ -196,32 +217,37 @@ def _unmanaged(
                 "namespace": f"/{space}",
                 "manager": f"/{manager}",
             },
-            hint=f"Set <robotNamespace>/{space}</robotNamespace> in the plugin, or start the "
-            f'controllers in "/{manager}".',
+            hint=f'Set {tag} in the plugin, or start the controllers in "/{manager}".',
         )
 
 
 def _manager_place(
-    robot: RobotDescription, launches: Sequence[LaunchUse]
+    robot: RobotDescription, launches: Sequence[LaunchUse], *, ros2: bool
 ) -> tuple[str, str] | None:
-    """The namespace of the controller manager of ROS 1 in Gazebo, without the first slash, and why
-    it is there; None if it is uncertain.
+    """The namespace of the controller manager in Gazebo, without the first slash, and why it is
+    there; None if it is uncertain.
 
-    Source: gazebo_ros_control, and gazebo_ros, which adds the namespace of a spawned model to the
-    plugins that state none.
+    Source: gazebo_ros_control, gazebo_ros2_control, gz_ros2_control, and gazebo_ros, which adds the
+    namespace of a spawned model to the plugins that state none.
     """
-    managers = [tag for tag in robot.plugins if "gazebo_ros_control" in tag.filename]
+    name = "ros2_control" if ros2 else "gazebo_ros_control"
+    managers = [tag for tag in robot.plugins if name in tag.filename]
     file = Path(robot.origin.file).resolve()
     own = [each for each in launches if each.description and each.description.resolve() == file]
     if len(managers) != 1 or any(each.unknown for each in own):
         return None
-    stated = managers[0].element.find("robotNamespace")
+    element = managers[0].element
+    ros = element.find("ros") if ros2 else None
+    stated = element.find("robotNamespace") if not ros2 else ros and ros.find("namespace")
     if stated is not None:
-        return stated.text.strip().strip("/"), "which its <robotNamespace> states"
+        tag = "<ros><namespace>" if ros2 else "<robotNamespace>"
+        return stated.text.strip().strip("/"), f"which its {tag} states"
     spaces = frozenset[str]().union(*(each.spaces for each in own))
     if len(spaces) != 1 or UNKNOWN in spaces:
         return None
     (space,) = spaces
+    if ros2 and not space:
+        return "", "because its plugin states no other namespace"
     return space.strip("/"), "the namespace of the node that spawns it"
 
 
