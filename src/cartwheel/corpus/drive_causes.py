@@ -179,6 +179,9 @@ def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
 def _cause(
     found: Sequence[Diagnostic], ratio: float, codes: Set[Code], *, turning: bool, arc: bool
 ) -> Diagnostic | None:
+    crossed = [each for each in found if turning and each.values.get("partly") is True]
+    if crossed and ratio < 1.0 - _DIFFERS:
+        return crossed[0]
     factors = {
         each.code: (each, factor)
         for each in found
@@ -374,6 +377,8 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
         return ratio if isinstance(ratio, float) and 0.0 < ratio < 1.0 else None
     if finding.code is robot.STEERING_REVERSED and turning:
         return -1.0
+    if finding.code is robot.WHEELS_SWAPPED and "partly" in values:
+        return None
     if finding.code is robot.WHEELS_SWAPPED:
         # Seen in the other direction, the robot drives backward instead.
         return -1.0

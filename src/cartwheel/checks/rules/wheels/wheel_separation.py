@@ -146,6 +146,7 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
         if turns and slipping is None:
             continue
         least = turn_ratio(one.robot, left, right, axle, one.used / 2, outer=True)
+        apart = mean_between(one, beside=True)
         message = f"the wheels slide when the robot turns, {_effect(one, ratio)}"
         factor, measure = _wrong_wheels(one, sizes)
         if measure:
@@ -168,7 +169,8 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
                 "multiplier": one.multiplier,
                 "measured": one.measured,
                 "fits": one.value / ratio,
-                "rolling": one.used / mean_between(one, beside=True),
+                # The sides of a drive that names wheels of both sides on each are not apart.
+                "rolling": one.used / apart if apart else 1.0,
                 **one.owner,
                 **({} if slipping is None else {"slip": True, "slipping": slipping}),
             },

@@ -9,12 +9,13 @@ from typing import Unpack
 from cartwheel.checks import controller_claims as claimed
 from cartwheel.checks import edits, nodes
 from cartwheel.checks.controller_files import Controller, Value
-from cartwheel.checks.robot import Robot
+from cartwheel.checks.robot import Drive, Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
     CAMBER,
     axis_senses,
+    drives_in,
     faces_backwards,
     faces_sideways,
     gap_between,
@@ -30,6 +31,8 @@ from cartwheel.dialects.classic.drives.diff_drive import LEGACY_SWAPPED
 from cartwheel.errors import Diagnostic, Where
 
 _SWAP = "Swap the two names."
+_OPPOSITE = 0.9
+"""Minimum cosine between opposite directions."""
 _BOTH = ", and both axes point to the right"
 
 
@@ -41,6 +44,8 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
             swap = edits.whole(element, nodes.written(element.tag, {}, right.name), mark=left.name)
             where: Where = {**swap, "hint": LEGACY_SWAPPED if is_legacy(drive) else _SWAP}
             yield from _judged(robot, left, right, "", **where)
+    for robot, drive in drives_in(subject):
+        yield from _crossed(robot, drive)
     for robot, controller, sides in controlled(subject):
         name = sides[0][0]
         pair = placed_pair(robot, *(side[0].text.strip() for side in sides))
@@ -69,6 +74,30 @@ def ways_of(controller: Controller) -> tuple[float, float]:
         for each in (controller.value(f"{side}_wheel_radius_multiplier"),)
     )
     return math.copysign(1.0, left), math.copysign(1.0, right)
+
+
+def _crossed(robot: Robot, drive: Drive) -> Iterator[Diagnostic]:
+    """Pairs of wheels of one drive that are swapped, while its first pair is not, or conversely.
+
+    The wheels of a side then turn against each other when the robot turns.
+    """
+    if len(drive.left) != len(drive.right):
+        return
+    names = zip(drive.left, drive.right, strict=True)
+    pairs = [pair for each in names if (pair := placed_pair(robot, *each)) is not None]
+    gaps = [gap_between(robot, *pair) for pair in pairs]
+    for (left, right), gap in zip(pairs[1:], gaps[1:], strict=True):
+        (first, _), usual = pairs[0], gaps[0]
+        if float(gap @ usual) < -_OPPOSITE * math.hypot(*gap) * math.hypot(*usual):
+            yield robot_codes.WHEELS_SWAPPED.diagnostic(
+                message=f'the wheel joints "{left.name}" and "{right.name}" are on other sides of '
+                f'the robot than "{first.name}" and its opposite, so the wheels of each side turn '
+                "against each other when the robot turns",
+                values={"left": left.name, "right": right.name, "partly": True},
+                hint=_SWAP,
+                origin=drive.tag.origin,
+                mark=left.name,
+            )
 
 
 def _judged(
