@@ -14,7 +14,6 @@ from cartwheel.codes import devices, files, robot, running, tags, world
 from cartwheel.corpus.drive_causes import (
     cause_of_drive,
     explains_turn,
-    flywheel,
     ignored_torque,
     is_free,
     wrong_sizes,
@@ -29,6 +28,7 @@ from cartwheel.corpus.fall_causes import (
     need_not_stand,
 )
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
+from cartwheel.corpus.inertia_causes import flywheel, sluggish
 from cartwheel.corpus.missing_movers import (
     held_bases,
     is_started,
@@ -338,7 +338,7 @@ def _measured(
         if not drive.follows:
             found = explaining("drive", drive.topic)
             forward = cause_of_drive(found, 1.0 + drive.error)
-            reason = forward or unsteady or ignored_torque(found, 1.0 + drive.error)
+            reason = forward or unsteady or _too_slow(found, 1.0 + drive.error)
             wrong += wrong_sizes(found, 1.0 + drive.error)
             explained += [reason] if reason is not None else []
             yield Fault(test="drive", subject=drive.topic, reason=reason)
@@ -355,7 +355,7 @@ def _measured(
             if sank and drive.follows:
                 # It also stands well enough to drive.
                 unsteady = wheel
-            reason = reason or unsteady or ignored_torque(found, 1.0 + drive.error_turn)
+            reason = reason or unsteady or _too_slow(found, 1.0 + drive.error_turn)
             wrong += wrong_sizes(found, 1.0 + drive.error_turn, turning=True)
             explained += [reason] if reason is not None else []
             sure = reason is None or not (reason.code in _BY_SLIDING and _slipping(found))
@@ -395,6 +395,11 @@ def _measured(
         sensors = reason.values.get("sensors", ())
         subject = ", ".join(map(str, sensors)) if isinstance(sensors, tuple) else ""
         yield Fault(test="publish", subject=subject, reason=reason)
+
+
+def _too_slow(found: Sequence[Diagnostic], ratio: float) -> Diagnostic | None:
+    """What explains that a base is too slow, if nothing else does."""
+    return ignored_torque(found, ratio) or sluggish(found, ratio)
 
 
 def _unpublished(

@@ -11,7 +11,6 @@ from cartwheel.codes import robot, running
 from cartwheel.codes.devices import CONTROLLER_GAIN_TOO_LOW, PLUGIN_PARAMETER_OBSOLETE
 from cartwheel.corpus.faults import most_severe
 from cartwheel.corpus.movers import reports
-from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Code, Diagnostic
 
@@ -33,8 +32,6 @@ _TOO_FAST = 0.05
 """Relative error from which a base is too fast."""
 _STUCK = 0.1
 """Predicted part of the turn rate up to which a robot may as well not turn at all."""
-_FLYWHEEL = 20.0
-"""Ratio of a wheel's inertia to the largest that it can have, beyond which it may tip a robot."""
 _DRIVING = frozenset(
     {
         robot.DRIVE_JOINT_UNKNOWN,
@@ -322,24 +319,6 @@ def _rolling(skids: Diagnostic) -> float:
     """The turn rate of wheels that do not slide, relative to the commanded one."""
     ratio = skids.values.get("rolling")
     return ratio if isinstance(ratio, float) else 1.0
-
-
-def flywheel(found: Iterable[Diagnostic], description: RobotDescription) -> Diagnostic | None:
-    """A wheel of such an inertia that the reaction to its acceleration tips the robot."""
-    # SDF's wheels have revolute joints without limits.
-    wheels = {
-        joint.child
-        for joint in description.joints
-        if joint.type == "continuous" or (joint.type == "revolute" and joint.axis.lower is None)
-    }
-    return most_severe(
-        each
-        for each in found
-        if each.code is robot.INERTIA_GEOMETRY_MISMATCH
-        and each.values.get("link") in wheels
-        and isinstance(ratio := each.values.get("ratio"), float)
-        and ratio > _FLYWHEEL
-    )
 
 
 def ignored_torque(found: Iterable[Diagnostic], ratio: float) -> Diagnostic | None:

@@ -42,6 +42,8 @@ from cartwheel.geometry import Pose, Vec3
 
 TOO_LARGE = 1.5
 """Maximum ratio to the inertia of the same mass placed at the corners of the geometry's box."""
+_WITHOUT_MESHES = 1000.0
+"""The same if the geometry lacks meshes, which may be larger than the rest of it."""
 TOO_SMALL = 20.0
 """Maximum ratio of the inertia of a solid of the same shape to the stated inertia."""
 _MARKER = 1e-3
@@ -182,8 +184,9 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
     for robot, link, inertial in links_with_mass(subject):
         solids = [solid.vertices for solid in robot.solids(link.name)]
         box = bounds(robot.rigid_cloud(link.name))
-        if box is None or not robot.whole(link.name):
+        if box is None:
             continue
+        whole = robot.whole(link.name)
         centre = np.array(inertial.pose.position)
         corner = np.maximum(np.abs(box[0] - centre), np.abs(box[1] - centre))
         if float(np.max(box[1] - box[0])) < _MARKER:
@@ -193,7 +196,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
         like = shape_inertia(robot, link)
         in_sdf = link.name in robot.in_sdf
         advice = _inertia_text(like, inertial.mass, sdf=in_sdf)
-        if stated > TOO_LARGE * largest:
+        if stated > (TOO_LARGE if whole else _WITHOUT_MESHES) * largest:
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity=None if _matters(robot, link, stated) else "info",
                 message=f'the inertia of link "{link.name}" is {ratio_text(stated / largest)} '
@@ -210,7 +213,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
                 place="" if in_sdf else "element",
             )
             continue
-        if not solids or like is None:
+        if not solids or like is None or not whole:
             continue
         solid = sum(like.diagonal) / 2 * inertial.mass / like.mass
         if 0 < stated < solid / TOO_SMALL:
