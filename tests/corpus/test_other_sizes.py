@@ -6,7 +6,7 @@ from tests.corpus.carts import cart, controlled, plugin, written
 from cartwheel.codes.robot import UNBALANCED, WHEEL_DIAMETER_MISMATCH, WHEEL_SEPARATION_MISMATCH
 from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 from cartwheel.corpus import try_robot
-from cartwheel.corpus.drive_causes import cause_of_drive
+from cartwheel.corpus.causes.drives import cause_of_drive
 from cartwheel.corpus.drive_topics import without_other_sizes
 from cartwheel.description import load_robot
 

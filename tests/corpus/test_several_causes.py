@@ -14,7 +14,7 @@ from cartwheel.codes.robot import (
     WHEELS_SWAPPED,
 )
 from cartwheel.corpus import try_robot
-from cartwheel.corpus.drive_causes import cause_of_drive
+from cartwheel.corpus.causes.drives import cause_of_drive
 
 
 def dragging(friction: float) -> str:

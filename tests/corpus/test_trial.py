@@ -53,8 +53,8 @@ from cartwheel.codes.running import (
 )
 from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import try_robot
+from cartwheel.corpus.causes.drives import cause_of_drive, explains_turn
 from cartwheel.corpus.diagnosis import faults
-from cartwheel.corpus.drive_causes import cause_of_drive, explains_turn
 from cartwheel.corpus.listening import listened
 from cartwheel.corpus.motion import positions
 from cartwheel.corpus.placing import HIGH, place

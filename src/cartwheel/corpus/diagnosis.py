@@ -11,15 +11,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.codes import devices, files, robot, running, tags, world
-from cartwheel.corpus.drive_causes import (
+from cartwheel.corpus.causes.drives import (
     cause_of_drive,
     explains_turn,
     ignored_torque,
     is_free,
     wrong_sizes,
 )
-from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
-from cartwheel.corpus.fall_causes import (
+from cartwheel.corpus.causes.falls import (
     cause_of_fall,
     falls_through,
     has_devices,
@@ -27,8 +26,9 @@ from cartwheel.corpus.fall_causes import (
     lost_wheel,
     need_not_stand,
 )
+from cartwheel.corpus.causes.inertias import flywheel, sluggish
+from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
-from cartwheel.corpus.inertia_causes import flywheel, sluggish
 from cartwheel.corpus.missing_movers import (
     held_bases,
     is_started,

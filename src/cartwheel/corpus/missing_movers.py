@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running
-from cartwheel.corpus.fall_causes import is_body_lost
+from cartwheel.corpus.causes.falls import is_body_lost
 from cartwheel.corpus.faults import Fault, coded, most_severe
 from cartwheel.corpus.movers import (
     LEFT_OUT,

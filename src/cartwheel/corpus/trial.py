@@ -12,8 +12,8 @@ from cartwheel.checks.checking import Report, check
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.corpus import commands, driving, motion
+from cartwheel.corpus.causes.falls import has_devices
 from cartwheel.corpus.diagnosis import faults
-from cartwheel.corpus.fall_causes import has_devices
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flying.flights import flights
 from cartwheel.corpus.flying.thrusters import bursts, thrusts

@@ -1,0 +1,1 @@
+"""What explains that a robot falls, or does not move as commanded."""
