@@ -41,7 +41,7 @@ ROBOT = """<?xml version="1.0"?>
     <inertial>
       <origin xyz="0 0 0.1"/>
       <mass value="6"/>
-      <inertia ixx="0.05" iyy="0.085" izz="0.125"/>
+      <inertia ixx="0.05" iyy="0.085" izz="0.125" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <visual>
       <origin xyz="0 0 0.1" rpy="0 0 0"/>
@@ -67,7 +67,7 @@ ROBOT = """<?xml version="1.0"?>
   <link name="left_wheel">
     <inertial>
       <mass value="0.5"/>
-      <inertia ixx="0.000867" iyy="0.0016" izz="0.000867"/>
+      <inertia ixx="0.000867" iyy="0.0016" izz="0.000867" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <visual>
       <origin rpy="1.5707963 0 0"/>
@@ -91,7 +91,7 @@ ROBOT = """<?xml version="1.0"?>
   <link name="right_wheel">
     <inertial>
       <mass value="0.5"/>
-      <inertia ixx="0.000867" iyy="0.0016" izz="0.000867"/>
+      <inertia ixx="0.000867" iyy="0.0016" izz="0.000867" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <collision>
       <origin rpy="1.5707963 0 0"/>
@@ -108,7 +108,7 @@ ROBOT = """<?xml version="1.0"?>
   <link name="caster_link">
     <inertial>
       <mass value="0.1"/>
-      <inertia ixx="0.000036" iyy="0.000036" izz="0.000036"/>
+      <inertia ixx="0.000036" iyy="0.000036" izz="0.000036" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <collision>
       <geometry>
@@ -127,7 +127,7 @@ ROBOT = """<?xml version="1.0"?>
     <inertial>
       <origin xyz="0 0 0.1"/>
       <mass value="0.3"/>
-      <inertia ixx="0.001" iyy="0.001" izz="0.00008"/>
+      <inertia ixx="0.001" iyy="0.001" izz="0.00008" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <collision>
       <origin xyz="0 0 0.1"/>
@@ -147,7 +147,7 @@ ROBOT = """<?xml version="1.0"?>
   <link name="finger">
     <inertial>
       <mass value="0.1"/>
-      <inertia ixx="0.00002" iyy="0.00002" izz="0.00002"/>
+      <inertia ixx="0.00002" iyy="0.00002" izz="0.00002" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <collision>
       <geometry>
@@ -262,7 +262,8 @@ WITH_ADVICE: dict[str, Case] = {
         'axis xyz="1 0 1"', 'xyz="0.707107 0 0.707107"'),
     "no inertial": ("inertia-missing", [
         ('<inertial>\n      <mass value="0.1"/>\n      <inertia ixx="0.00002" iyy="0.00002" '
-         'izz="0.00002"/>\n    </inertial>', "")], 'link name="finger"', '<mass value="1"/>'),
+         'izz="0.00002" ixy="0" ixz="0" iyz="0"/>\n    </inertial>', "")],
+        'link name="finger"', '<mass value="1"/>'),
     "triangle": ("inertia-impossible", [('iyy="0.085" izz="0.125"', 'iyy="0.085" izz="0.325"')],
         'izz="0.325"', '<inertia ixx="0.05" ixy="0" ixz="0" iyy="0.085" iyz="0" izz="0.125"/>'),
     "negative": ("inertia-impossible", [('ixx="0.001"', 'ixx="-0.001"')], 'ixx="-0.001"',

@@ -8,11 +8,14 @@ from cartwheel.codes.robot import SKID_STEERING
 from cartwheel.corpus import try_robot
 
 BASE = (
-    '<link name="base"><inertial><mass value="8"/><inertia ixx="0.2" iyy="0.2" izz="0.3"/>'
+    '<link name="base">'
+    '<inertial><mass value="8"/><inertia ixx="0.2" iyy="0.2" izz="0.3" ixy="0" ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><box size="0.5 0.25 0.06"/></geometry></collision></link>'
 )
 WHEEL = (
-    '<link name="{name}"><inertial><mass value="0.4"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-3"/>'
+    '<link name="{name}">'
+    '<inertial><mass value="0.4"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-3" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><cylinder radius="0.1" length="0.04"/></geometry></collision>'
     '</link><joint name="{name}_joint" type="continuous"><parent link="base"/>'
     '<child link="{name}"/><origin xyz="{x} {y} -0.02" rpy="-1.5708 0 0"/>'

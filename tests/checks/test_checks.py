@@ -20,7 +20,7 @@ from cartwheel.errors import CartwheelError, UnknownNameError
 LINK = """  <link name="{name}">
     <inertial>
       <mass value="12"/>
-      <inertia ixx="{ixx}" iyy="2" izz="2"/>
+      <inertia ixx="{ixx}" iyy="2" izz="2" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <collision>
       <geometry><box size="1 1 1"/></geometry>
@@ -166,7 +166,7 @@ def test_wrong_settings_are_errors(file, text):
     [
         BAD.replace(INERTIA, f"<!-- cartwheel: ignore CW220 -->\n      {INERTIA}"),
         BAD.replace(INERTIA, f"<!-- cartwheel: ignore CW221, CW220 (a test) -->\n\n{INERTIA}"),
-        BAD.replace('izz="2"/>', 'izz="2"/> <!-- cartwheel: ignore inertia-impossible -->'),
+        BAD.replace('iyz="0"/>', 'iyz="0"/> <!-- cartwheel: ignore inertia-impossible -->'),
     ],
 )
 def test_a_comment_suppresses_a_code_at_its_place(file, text):

@@ -13,7 +13,10 @@ from cartwheel.description.files.plugin_xml import exporting_file
 from cartwheel.dialects.ros_control.catalogue import find_type
 from cartwheel.errors import UnknownNameError
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 OWN = "effort_controller/JointTrajectoryController"
 EXPORTED = f'<library path="lib/x"><class name="{OWN}" type="own::Own"/></library>'
 

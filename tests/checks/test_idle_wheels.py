@@ -9,7 +9,7 @@ from cartwheel.corpus import try_robot
 
 LINK = (
     '<link name="{name}"><inertial><mass value="{mass}"/>'
-    '<inertia ixx="0.01" iyy="0.01" izz="0.01"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>'
     "</inertial><collision><geometry>{shape}</geometry></collision></link>"
 )
 JOINT = (

@@ -5,7 +5,8 @@ import pytest
 from cartwheel.checks.checking import check
 
 BASE = (
-    '<link name="base"><inertial><mass value="{base}"/><inertia ixx="1" iyy="1" izz="1"/>'
+    '<link name="base">'
+    '<inertial><mass value="{base}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><box size="1 1 1"/></geometry></collision></link>'
 )
 CAMERA = (
@@ -13,8 +14,8 @@ CAMERA = (
     '<box size="0.1 0.1 0.1"/></geometry></collision></link><joint name="j" type="fixed">'
     '<parent link="base"/><child link="camera"/></joint>'
 )
-IMPOSSIBLE = '<inertia ixx="1e-5" iyy="1e-5" izz="1e-4"/>'
-TINY = '<inertia ixx="1e-9" iyy="1e-9" izz="1e-9"/>'
+IMPOSSIBLE = '<inertia ixx="1e-5" iyy="1e-5" izz="1e-4" ixy="0" ixz="0" iyz="0"/>'
+TINY = '<inertia ixx="1e-9" iyy="1e-9" izz="1e-9" ixy="0" ixz="0" iyz="0"/>'
 
 
 @pytest.fixture
@@ -43,7 +44,8 @@ def test_a_link_that_only_marks_a_place_has_no_inertia_of_its_shape(tmp_path, ra
     path = tmp_path / "robot.urdf"
     path.write_text(
         '<robot name="robot"><link name="base"><inertial><mass value="1e-5"/>'
-        '<inertia ixx="1e-6" iyy="1e-6" izz="1e-6"/></inertial><collision><geometry>'
+        '<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" '
+        'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>'
         f'<sphere radius="{radius}"/></geometry></collision></link></robot>'
     )
     names = {each.code.name for each in check(str(path)).findings}

@@ -5,7 +5,10 @@ import pytest
 import cartwheel
 from cartwheel.codes.robot import MIMIC_OUT_OF_LIMITS
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 
 
 def joint(name, limits, mimic="", kind="revolute"):

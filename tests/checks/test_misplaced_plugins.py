@@ -11,7 +11,9 @@ from cartwheel.codes.devices import (
 from cartwheel.codes.robot import BASE_WITHOUT_COLLISION
 
 LINK = (
-    '<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<link name="base">'
+    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    "</inertial>"
     '<collision><geometry><box size="1 1 1"/></geometry></collision></link>'
 )
 LASER = '<plugin name="p" filename="libgazebo_ros_laser.so"/>'

@@ -430,7 +430,7 @@ def test_a_tall_robot_on_a_small_oblique_foot_falls_over(tmp_path, height, falls
     path.write_text(
         f'<robot name="pole"><link name="pole"><inertial><origin xyz="0 0 {height}"/>'
         '<mass value="1"/>'
-        '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial><collision>'
+        '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial><collision>'
         '<origin rpy="0.15 0.15 0"/><geometry><box size="0.04 0.04 0.02"/></geometry></collision>'
         f'<collision><origin xyz="0 0 {height}"/><geometry><sphere radius="0.005"/></geometry>'
         "</collision></link></robot>"

@@ -20,7 +20,8 @@ BOTH = (
     '<depend condition="$ROS_VERSION == 2">rclcpp</depend>'
 )
 BODY = (
-    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial>'
     '<collision><geometry><box size="1 1 0.1"/></geometry></collision>'
 )
 ARM = (

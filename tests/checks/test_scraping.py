@@ -5,7 +5,10 @@ import pytest
 import cartwheel
 from cartwheel.codes.robot import BODY_ON_GROUND, WHEELS_OFF_GROUND
 
-INERTIAL = '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'
+INERTIAL = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 WHEELS = ("front_left", "front_right", "back_left", "back_right")
 MECANUM = (
     '<gazebo><plugin name="drive" filename="gz-sim-mecanum-drive-system">'

@@ -12,7 +12,8 @@ from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Origin
 
 BODY = (
-    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial>'
     '<collision><geometry><box size="1 1 0.1"/></geometry></collision>'
 )
 SENSOR = '<sensor name="{kind}_1" type="{kind}"><topic>{kind}</topic></sensor>'

@@ -11,7 +11,8 @@ from cartwheel.errors import Origin
 INSIDE = str(stand_ins() / "realsense2_description" / "urdf" / ".." / ".." / "parts.xacro")
 CALL = "robot.xacro:12 xacro:sensor_d435"
 BODY = (
-    '<link name="base"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/>'
+    '<link name="base">'
+    '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><box size="0.5 0.5 0.5"/></geometry></collision></link>'
 )
 

@@ -9,7 +9,7 @@ from cartwheel.corpus import try_robot
 
 LEG = (
     '<link name="leg"><inertial><origin xyz="0 0 -0.06"/><mass value="0.05"/>'
-    '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/></inertial></link>'
+    '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<link name="foot"><collision><origin xyz="0 0 -0.15"/><geometry><sphere radius="0.02"/>'
     "</geometry></collision></link>"
     '<joint name="ankle" type="fixed"><parent link="leg"/><child link="foot"/></joint>'

@@ -11,7 +11,10 @@ from cartwheel.codes.robot import (
     WHEELS_TOED,
 )
 
-INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
+INERTIAL = (
+    '<inertial><mass value="{m}"/>'
+    '<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 WHEEL = (
     '<link name="{name}">' + INERTIAL.format(m=0.5, i=0.002) + "<collision>"
     '<origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.1" length="0.03"/></geometry>'

@@ -77,8 +77,9 @@ def test_a_vehicle_of_gazebo_classic_turns_as_fast_as_is_reported(bench):
 
 
 BASE = """<robot name="r">{world}<link name="root"><inertial><mass value="{mass}"/>
-<inertia ixx="1e-6" iyy="1e-6" izz="1e-6"/></inertial></link>
-<link name="base"><inertial><mass value="70"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
+<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="base"><inertial><mass value="70"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><geometry><box size="0.5 0.5 0.1"/></geometry></collision></link>
 <joint name="turn" type="continuous"><parent link="root"/><child link="base"/><axis xyz="0 0 1"/>
 </joint>

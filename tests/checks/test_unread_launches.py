@@ -12,7 +12,7 @@ from cartwheel.description.launches import effort, read_launch, search
 
 ARM = (
     '<robot name="arm"><link name="world"/><link name="base"><inertial><mass value="1"/>'
-    '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial></link>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<joint name="hinge" type="revolute"><parent link="world"/><child link="base"/>'
     '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
     '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo></robot>'

@@ -29,7 +29,7 @@ CORNERS = {
 def link(name, more=""):
     return (
         f'<link name="{name}"><inertial><mass value="1"/><inertia ixx="0.005" iyy="0.005" '
-        f'izz="0.005"/></inertial>{more}</link>\n'
+        f'izz="0.005" ixy="0" ixz="0" iyz="0"/></inertial>{more}</link>\n'
     )
 
 

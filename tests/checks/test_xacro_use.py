@@ -4,7 +4,7 @@ import pytest
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
 LINK = """<link name="base"><inertial><mass value="1"/>
-<inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 """
 
 
@@ -68,7 +68,8 @@ def test_what_another_file_of_the_package_uses_is_used(bench, tmp_path):
 def test_findings_of_a_macro_are_reported_once_with_the_calls(bench):
     macro = (
         '<xacro:macro name="part" params="side">\n<link name="${side}"><inertial>'
-        '<mass value="1"/>\n<inertia ixx="1" iyy="1" izz="9"/></inertial></link>\n'
+        '<mass value="1"/>\n'
+        '<inertia ixx="1" iyy="1" izz="9" ixy="0" ixz="0" iyz="0"/></inertial></link>\n'
         '<joint name="${side}_joint" type="continuous"><parent link="base"/>'
         '<child link="${side}"/></joint></xacro:macro>\n'
     )
@@ -83,7 +84,8 @@ def test_findings_of_a_macro_are_reported_once_with_the_calls(bench):
 
 def test_findings_of_one_line_are_distinguished_by_their_values(bench):
     links = "".join(
-        f'<link name="{name}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="9"/>'
+        f'<link name="{name}">'
+        f'<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="9" ixy="0" ixz="0" iyz="0"/>'
         f'</inertial></link><joint name="{name}_joint" type="continuous"><parent link="base"/>'
         f'<child link="{name}"/></joint>'
         for name in ("a", "b")

@@ -16,7 +16,7 @@ GOOD = """<?xml version="1.0"?>
   <link name="bar">
     <inertial>
       <mass value="12"/>
-      <inertia ixx="2" iyy="2" izz="2"/>
+      <inertia ixx="2" iyy="2" izz="2" ixy="0" ixz="0" iyz="0"/>
     </inertial>
     <collision>
       <geometry><box size="1 1 1"/></geometry>
@@ -74,7 +74,7 @@ def test_a_finding_shows_its_line_a_caret_and_the_text_to_write(checked):
     lines = checked(ERROR, status=1).splitlines()
     assert ":6: error: " in lines[0]
     assert lines[0].endswith(" inertia-impossible]")
-    assert lines[1] == '    6 | <inertia ixx="2" iyy="2" izz="-2"/>'
+    assert lines[1] == '    6 | <inertia ixx="2" iyy="2" izz="-2" ixy="0" ixz="0" iyz="0"/>'
     assert lines[2] == " " * 8 + "^" + "~" * (len(lines[1]) - 9)
     assert lines[3] == '  fix: <inertia ixx="2" ixy="0" ixz="0" iyy="2" iyz="0" izz="2"/>'
     assert lines[-1].endswith("bar.urdf: 1 error")
@@ -86,7 +86,8 @@ def test_a_caret_points_at_what_is_wrong(checked):
         "</robot>",
         '<joint name="j" type="revolute">\n<parent link="bar"/>\n<child link="tip"/>\n'
         '<axis xyz="0 0 0"/>\n<limit lower="0" upper="1" effort="1" velocity="1"/></joint>'
-        '<link name="tip"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/>'
+        '<link name="tip">'
+        '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
         "</inertial></link></robot>",
     )
     lines = checked(text, status=1).splitlines()
@@ -183,7 +184,7 @@ def test_arguments_of_a_xacro_are_taken(program, tmp_path):
     path = tmp_path / "bar.xacro"
     path.write_text(
         ERROR.replace('name="bar">\n', 'name="bar" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-        '<xacro:arg name="izz" default="9"/>', 1).replace('izz="-2"/>\n', 'izz="$(arg izz)"/>\n')
+        '<xacro:arg name="izz" default="9"/>', 1).replace('izz="-2" ', 'izz="$(arg izz)" ')
     )  # fmt: skip
     program("check", path, status=1)
     program("check", path, "izz:=2", status=0)

@@ -7,7 +7,8 @@ import pytest
 from cartwheel.codes.command import NO_ROBOTS
 
 BOX = """<robot name="box"><link name="box">
-<inertial><mass value="3"/><inertia ixx="0.5" iyy="0.5" izz="0.5"/></inertial>
+<inertial><mass value="3"/>
+<inertia ixx="0.5" iyy="0.5" izz="0.5" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><geometry><box size="1 1 1"/></geometry></collision></link>
 <gazebo><plugin name="p" filename="libunheard_of.so"/></gazebo></robot>
 """

@@ -7,11 +7,14 @@ from pathlib import Path
 TRACK, RADIUS = 0.2, 0.05
 """m."""
 _BASE = (
-    '<link name="base"><inertial><mass value="2"/><inertia ixx="0.02" iyy="0.02" izz="0.02"/>'
+    '<link name="base">'
+    '<inertial><mass value="2"/><inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><box size="0.3 0.15 0.06"/></geometry></collision></link>'
 )
 _WHEEL = (
-    '<link name="{name}"><inertial><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-4" izz="2e-4"/>'
+    '<link name="{name}">'
+    '<inertial><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-4" izz="2e-4" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><cylinder radius="0.05" length="0.02"/></geometry>'
     "</collision></link>"
     '<joint name="{name}_joint" type="continuous"><parent link="base"/><child link="{name}"/>'

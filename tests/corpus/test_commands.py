@@ -10,12 +10,12 @@ from cartwheel.corpus.verdict import Reach
 
 BASE = (
     '<link name="base"><inertial><mass value="{mass}"/>'
-    '<inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial><collision>'
+    '<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial><collision>'
     '<geometry><box size="0.3 0.3 0.1"/></geometry></collision></link>'
 )
 LINK = (
     '<link name="{name}"><inertial><origin xyz="{at}"/><mass value="{mass}"/>'
-    '<inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial></link>'
+    '<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<joint name="{name}_joint" type="{kind}"><parent link="{parent}"/><child link="{name}"/>'
     '<origin xyz="{place}"/><axis xyz="{axis}"/>'
     '<limit lower="-3" upper="3" effort="200" velocity="100"/></joint>'
@@ -151,7 +151,9 @@ def test_a_robot_that_defines_a_material_twice_does_not_load(tmp_path):
 
 
 WHEEL = (
-    '<link name="{name}"><inertial><mass value="0.3"/><inertia ixx="3e-4" iyy="4e-4" izz="3e-4"/>'
+    '<link name="{name}">'
+    '<inertial><mass value="0.3"/><inertia ixx="3e-4" iyy="4e-4" izz="3e-4" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial><collision><origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.08"'
     ' length="0.03"/></geometry></collision></link>'
     '<joint name="{name}_joint" type="continuous"><parent link="base"/><child link="{name}"/>'

@@ -9,7 +9,7 @@ from cartwheel.simulation.models.couplings import Coupling
 
 FINGER = (
     '<link name="{name}"><inertial><mass value="0.1"/>'
-    '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/></inertial></link>'
+    '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<joint name="{name}_joint" type="revolute"><parent link="palm"/><child link="{name}"/>'
     '<origin xyz="0 {y} 0"/><axis xyz="0 0 1"/>'
     '<limit lower="{lower}" upper="{upper}" effort="5" velocity="5"/>'

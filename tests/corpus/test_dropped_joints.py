@@ -10,7 +10,10 @@ from cartwheel.codes.robot import INERTIA_MISSING, LIMIT_INCOMPLETE, LIMIT_MISSI
 from cartwheel.codes.tags import TAG_MISSING, VALUE_INVALID
 from cartwheel.corpus import try_robot
 
-MASS = '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'
+MASS = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 LINK = '<link name="{name}">{mass}</link>'
 JOINT = (
     '<joint name="{name}_joint" type="{kind}"><parent link="{parent}"/><child link="{name}"/>'

@@ -7,7 +7,8 @@ from cartwheel.corpus.trial import try_robot
 
 LINK = (
     '<link name="{name}"><inertial><origin xyz="{at}"/><mass value="{mass}"/>'
-    '<inertia ixx="0.02" iyy="0.02" izz="0.02"/></inertial><collision><origin xyz="{at}"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" '
+    'ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="{at}"/>'
     '<geometry><box size="{size}"/></geometry></collision></link>'
 )
 JOINT = (

@@ -9,7 +9,7 @@ from cartwheel.description.launches import LaunchUse
 
 LINK = (
     '<link name="{}"><inertial><mass value="1"/>'
-    '<inertia ixx="1" iyy="1" izz="1"/></inertial></link>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
 )
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"{}>{}</robot>'
 WHEEL = '<xacro:macro name="wheel" params="name">' + LINK.format("${name}") + "</xacro:macro>"

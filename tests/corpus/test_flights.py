@@ -11,12 +11,12 @@ from cartwheel.description import load_text
 
 BODY = (
     '<link name="body"><inertial><mass value="{mass}"/>'
-    '<inertia ixx="2e-3" iyy="2e-3" izz="3e-3"/></inertial><collision>'
+    '<inertia ixx="2e-3" iyy="2e-3" izz="3e-3" ixy="0" ixz="0" iyz="0"/></inertial><collision>'
     '<geometry><box size="0.3 0.3 0.09"/></geometry></collision></link>'
 )
 ROTOR = (
     '<link name="rotor_{i}"><inertial><mass value="0.005"/>'
-    '<inertia ixx="1e-6" iyy="8e-6" izz="9e-6"/></inertial></link>'
+    '<inertia ixx="1e-6" iyy="8e-6" izz="9e-6" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<joint name="rotor_{i}_joint" type="continuous"><parent link="body"/>'
     '<child link="rotor_{i}"/><origin xyz="{x} {y} 0"/><axis xyz="0 0 1"/></joint>'
     '<gazebo><plugin name="motor_{i}" filename="librotors_gazebo_motor_model.so">'

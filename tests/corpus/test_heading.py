@@ -13,7 +13,8 @@ from cartwheel.corpus.heading import FORWARD, heading, rolling
 from cartwheel.description import load_text
 
 LINK = (
-    '<link name="{name}"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/>'
+    '<link name="{name}">'
+    '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>'
     "</inertial><collision><geometry>{shape}</geometry></collision></link>"
 )
 JOINT = (

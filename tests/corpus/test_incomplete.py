@@ -12,7 +12,10 @@ from cartwheel.codes.robot import (
 )
 from cartwheel.corpus import try_robot
 
-MASS = '<inertial><mass value="2"/><inertia ixx="0.02" iyy="0.02" izz="0.02"/></inertial>'
+MASS = (
+    '<inertial><mass value="2"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 COLLISION = '<collision><geometry><box size="0.3 0.15 0.06"/></geometry></collision>'
 XACRO = '<robot name="robot" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 INCLUDE = '<xacro:include filename="$(find no_such_package)/urdf/arm.xacro"/>'
@@ -95,7 +98,10 @@ def test_a_robot_may_tip_over_because_what_supports_it_is_missing(tmp_path, incl
     assert (fault.test, fault.code, fault.source) == ("stand", reason, "file")
 
 
-INERTIA = '<inertial><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+INERTIA = (
+    '<inertial><mass value="2"/>'
+    '<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 LIMB = (
     f'<link name="limb">{INERTIA.replace("<mass", """<origin xyz="0.1 0 0.5"/><mass""")}'
     "{collision}</link>"

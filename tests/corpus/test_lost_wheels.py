@@ -11,7 +11,9 @@ MESH = '<mesh filename="package://no_such_package/{name}.stl"/>'
 CYLINDER = '<cylinder radius="0.1" length="0.04"/>'
 BODY = (
     '<link name="{name}"><inertial><mass value="{mass}"/><inertia ixx="0.02" iyy="0.02" izz="0.02"'
-    '/></inertial><collision><origin xyz="0 0 {z}"/><geometry>{shape}</geometry></collision></link>'
+    " "
+    'ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0 0 {z}"/><geometry>{shape}'
+    "</geometry></collision></link>"
 )
 DRIVE = (
     '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2'

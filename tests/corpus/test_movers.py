@@ -157,7 +157,9 @@ def test_what_measures_moves_no_robot(tmp_path, name):
 def test_an_unsupported_plugin_with_a_route_moves_a_model_without_joints(tmp_path, tags, moves):
     plugin = f'<gazebo><plugin name="x" filename="libown_thing.so">{tags}</plugin></gazebo>'
     box = (
-        '<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+        '<link name="base">'
+        '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+        "</inertial>"
         '<collision><geometry><box size="1 1 1"/></geometry></collision></link>'
     )
     path = tmp_path / "robot.urdf"
@@ -233,7 +235,9 @@ NAMING = (
     "<motorJoint>left_joint</motorJoint></plugin></gazebo>"
 )
 ARM = (
-    '<link name="arm"><inertial><mass value="0.1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<link name="arm">'
+    '<inertial><mass value="0.1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    "</inertial>"
     '</link><joint name="shoulder" type="continuous"><parent link="base"/><child link="arm"/>'
     '<axis xyz="0 0 1"/></joint>'
 )

@@ -1,8 +1,10 @@
-"""Robots for gz-sim that gz-sim does not load, because no body can have the inertia of a link."""
+"""Robots that Gazebo does not load, or only without parts of links."""
 
 import pytest
+from tests.corpus.carts import cart, plugin, written
 
 from cartwheel.codes.robot import INERTIA_IMPOSSIBLE
+from cartwheel.codes.tags import ELEMENT_LEFT_OUT, LINK_CUT_SHORT
 from cartwheel.corpus import try_robot
 
 GZ, CLASSIC = "gz-sim-joint-state-publisher-system", "libgazebo_ros_joint_state_publisher.so"
@@ -46,3 +48,28 @@ def test_a_urdf_for_gz_sim_is_refused_by_the_sum_of_merged_links(tmp_path):
         links = link.format("base", base) + link.format("lid", 0.03)
         path.write_text(f'<robot name="r">{links}{joint}{plugin}</robot>')
         assert [try_robot(path, standing=1.0).outcome] == faults
+
+
+LID = (
+    '<link name="lid">{}</link><joint name="lid_joint" type="fixed"><parent link="base"/>'
+    '<child link="lid"/><origin xyz="0 0 0.1"/></joint>'
+)
+SMALL = '<geometry><box size="0.1 0.1 0.01"/></geometry>'
+SHAPES = f"<visual>{SMALL}</visual><collision>{SMALL}</collision>"
+POINT = '<mass value="0.01"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
+
+
+@pytest.mark.parametrize(
+    ("lid", "code"),
+    [
+        (f"<inertial>{POINT}</inertial>{SHAPES}", LINK_CUT_SHORT),
+        # Only the visual is lost.
+        (f"<inertial>{POINT}</inertial><visual>{SMALL}</visual>", None),
+        (SHAPES.replace("</visual>", "<material/></visual>"), ELEMENT_LEFT_OUT),
+        (SHAPES, None),
+    ],
+)
+def test_a_link_that_gazebo_loads_without_its_collisions_is_a_fault(tmp_path, lid, code):
+    verdict = try_robot(written(tmp_path, cart(), LID.format(lid), plugin()), standing=1.0)
+    assert [(each.test, each.code) for each in verdict.faults] == ([("load", code)] if code else [])
+    assert verdict.outcome == ("file" if code else "good")

@@ -124,7 +124,9 @@ def test_of_two_drives_the_torque_of_the_last_one_counts(tmp_path, torques, driv
 def test_transmissions_that_hold_the_wheels_are_tested_without_their_manager(tmp_path):
     """The manager also runs a controller, without which the drive may not steer."""
     arm = (
-        '<link name="arm"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/>'
+        '<link name="arm">'
+        '<inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" '
+        'ixz="0" iyz="0"/>'
         '</inertial></link><joint name="arm_joint" type="revolute"><parent link="base"/>'
         '<child link="arm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="5" '
         'velocity="5"/></joint>' + TRANSMISSION.format(name="arm", kind="Position")

@@ -106,7 +106,7 @@ def test_check_reports_a_base_without_mass(tmp_path):
     assert [each.values["link"] for each in found] == ["base"]
     held = text.replace(
         '<link name="front">', '<link name="front"><inertial><mass value="1"/>'
-        '<inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/></inertial>'
+        '<inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/></inertial>'
     )  # fmt: skip
     codes = {each.code for each in cartwheel.check(written(tmp_path, held, plugin())).findings}
     assert MASS_NOT_POSITIVE not in codes

@@ -9,7 +9,8 @@ from cartwheel.corpus import try_robot
 
 LINK = (
     '<link name="{name}"><inertial><origin xyz="0 0 {z}"/><mass value="{mass}"/>'
-    '<inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial><collision><origin xyz="0 0 {z}"/>'
+    '<inertia ixx="0.1" iyy="0.1" izz="0.1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0 0 {z}"/>'
     '<geometry><box size="{size}"/></geometry></collision></link>'
 )
 MOVED = (
@@ -70,7 +71,9 @@ def test_a_robot_without_weight_and_collisions_turns_with_its_arm(tmp_path):
 
 
 ROTOR = (
-    '<link name="{name}"><inertial><mass value="0.01"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5"/>'
+    '<link name="{name}">'
+    '<inertial><mass value="0.01"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial></link><joint name="{name}_joint" type="continuous"><parent link="base"/>'
     '<child link="{name}"/><origin xyz="{x} {y} 0.15"/><axis xyz="0 0 1"/></joint><gazebo>'
     '<plugin name="{name}" filename="gz-sim-multicopter-motor-model-system">'

@@ -63,14 +63,19 @@ from cartwheel.corpus.verdict import Drive, Reach, Stand, Verdict
 from cartwheel.description import load_robot, load_text
 from cartwheel.description.launches import launches_near
 
-INERTIA = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
+INERTIA = (
+    '<inertial><mass value="{m}"/>'
+    '<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 BOX = (
     '<link name="{name}"><inertial><origin xyz="{at}"/><mass value="2"/>'
-    '<inertia ixx="0.02" iyy="0.02" izz="0.02"/></inertial><collision>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial><collision>'
     '<geometry><box size="{size}"/></geometry></collision></link>'
 )
 WHEEL = (
-    '<link name="{name}"><inertial><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-4" izz="2e-4"/>'
+    '<link name="{name}">'
+    '<inertial><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-4" izz="2e-4" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><cylinder radius="0.05" length="0.02"/></geometry>'
     "</collision></link>"
     '<joint name="{name}_joint" type="continuous"><parent link="base"/><child link="{name}"/>'
@@ -91,7 +96,7 @@ CASTER = (
 ARM = (
     '<link name="world"/><link name="base"/><link name="upper">'
     '<inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
-    '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial></link>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>'
     '<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>'
     '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
@@ -566,7 +571,7 @@ def test_a_missing_mesh_above_a_robot_is_no_reason_why_it_tips(tried, height, co
 
 
 LEG = """<link name="leg"><inertial><mass value="4"/>
-  <inertia ixx="0.05" iyy="0.05" izz="0.1"/></inertial>
+  <inertia ixx="0.05" iyy="0.05" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
   <collision><origin xyz="0 0 -0.3"/><geometry><box size="0.4 0.4 0.05"/>
   </geometry></collision></link>
 <joint name="hip" type="revolute"><parent link="base"/><child link="leg"/><origin xyz="0 0 -0.05"/>
@@ -693,7 +698,8 @@ def test_damping_that_the_effort_limit_cannot_overcome_is_the_reason(tmp_path, t
 
 LIFT = (
     '<link name="world"/><link name="base"/><link name="cart"><inertial><mass value="1"/>'
-    '<inertia ixx="1" iyy="1" izz="1"/></inertial></link><joint name="stand" type="fixed">'
+    '<inertia ixx="1" iyy="1" izz="1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="stand" type="fixed">'
     '<parent link="world"/><child link="base"/></joint><joint name="slide" type="prismatic">'
     '<parent link="base"/><child link="cart"/><axis xyz="0 0 1"/><dynamics damping="1"/>'
     '<limit lower="-2.5" upper="2.5" effort="1000" velocity="30"/></joint>'
@@ -782,7 +788,10 @@ def test_what_falls_through_the_ground_has_no_collision(tried):
         ("load", INERTIA_MISSING, "file"),
         ("stand", BASE_WITHOUT_COLLISION, "file"),
     ]
-    inertia = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    inertia = (
+        '<inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
     verdict = tried(f'<link name="base">{inertia}{shape}</link>')
     assert [fault.code for fault in verdict.faults] == [BASE_WITHOUT_COLLISION]
 
@@ -850,7 +859,9 @@ def test_an_inertia_that_no_motor_moves_is_why_a_joint_does_not_arrive(tmp_path,
     path.write_text(PID.format(p=100.0))
     heavy = ARM.format(kind="Effort").replace('ixx="0.01" iyy="0.01"', 'ixx="1e5" iyy="1e5"')
     shape = '<collision><geometry><box size="0.1 0.1 0.2"/></geometry></collision></link>'
-    heavy = heavy.replace('izz="0.01"/></inertial></link>', f'izz="1e5"/></inertial>{shape}')
+    heavy = heavy.replace('izz="0.01" ixy', 'izz="1e5" ixy').replace(
+        "</inertial></link>", f"</inertial>{shape}"
+    )
     (fault,) = tried(heavy, controllers=[path]).faults
     assert (fault.test, fault.code) == ("reach", INERTIA_GEOMETRY_MISMATCH)
     assert fault.source == "file"
@@ -1337,7 +1348,7 @@ def test_an_effort_is_tested_on_each_joint_alone(tmp_path, tried):
     pole = ARM.format(kind="Effort").replace('<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/>', 1)
     rail = (
         '<link name="cart"><inertial><mass value="0.05"/>'
-        '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/></inertial></link>'
+        '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>'
         '<joint name="rail" type="prismatic"><parent link="base"/><child link="cart"/>'
         '<axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="50" velocity="9"/></joint>'
     )
@@ -1380,11 +1391,15 @@ def test_the_integral_of_ros_control_without_a_limit_corrects_no_error(tmp_path,
 
 
 BOAT = (
-    '<link name="base"><inertial><mass value="20"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<link name="base">'
+    '<inertial><mass value="20"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    "</inertial>"
     '<collision><geometry><box size="1 0.4 0.05"/></geometry></collision></link>'
 )
 SCREW = (
-    '<link name="{name}"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/>'
+    '<link name="{name}">'
+    '<inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial></link><joint name="{name}_joint" type="continuous"><parent link="base"/>'
     '<child link="{name}"/><origin xyz="-0.5 {y} 0"/><axis xyz="1 0 0"/></joint>'
     '<gazebo><plugin name="gz::sim::systems::Thruster" filename="gz-sim-thruster-system">'
@@ -1450,10 +1465,11 @@ def test_a_thruster_without_its_joint_is_a_fault_of_the_file(tried):
 
 LEGS = (
     '<link name="base"><inertial><origin xyz="0.12 0 0"/><mass value="2"/>'
-    '<inertia ixx="0.02" iyy="0.02" izz="0.02"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><box size="0.3 0.2 0.1"/></geometry></collision></link>'
     '<link name="upper"><inertial><origin xyz="0 0 -0.2"/><mass value="0.5"/>'
-    '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial><collision><origin xyz="0 0 -0.25"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" '
+    'ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0 0 -0.25"/>'
     '<geometry><box size="0.05 0.05 0.5"/></geometry></collision></link>'
     '<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>'
     '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
@@ -1472,7 +1488,9 @@ def test_the_joints_of_a_robot_that_lies_on_them_are_moved_above_the_ground(tmp_
 
 
 FOOT = (
-    '<link name="foot"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/>'
+    '<link name="foot">'
+    '<inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><box size="0.02 0.02 0.02"/></geometry></collision></link>'
     '<joint name="shoulder" type="prismatic"><parent link="base"/><child link="foot"/>'
     '<origin xyz="0.1 0 {z}"/><axis xyz="0 0 -1"/>'
@@ -1494,7 +1512,9 @@ def test_a_joint_whose_link_the_ground_holds_is_moved_above_it(tmp_path, tried, 
 
 def test_topics_of_a_robot_that_is_tested_above_the_ground_are_its_own(tried):
     arm = (
-        '<link name="arm"><inertial><mass value="0.1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/>'
+        '<link name="arm">'
+        '<inertial><mass value="0.1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" '
+        'ixz="0" iyz="0"/>'
         '</inertial></link><joint name="elbow" type="continuous"><parent link="base"/>'
         '<child link="arm"/><axis xyz="0 0 1"/></joint><gazebo><plugin name="f" '
         'filename="gz-sim-apply-joint-force-system"><joint_name>elbow</joint_name></plugin></gazebo>'
@@ -1509,7 +1529,9 @@ def test_an_arm_that_hangs_far_below_its_base_is_tested_above_the_ground(tmp_pat
     path = tmp_path / "arm.yaml"
     path.write_text(PID.format(p=500.0))
     ball = (
-        '<link name="ball"><inertial><mass value="0.1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/>'
+        '<link name="ball">'
+        '<inertial><mass value="0.1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" '
+        'ixz="0" iyz="0"/>'
         '</inertial><collision><geometry><sphere radius="0.1"/></geometry></collision></link>'
         '<joint name="rope" type="fixed"><parent link="base"/><child link="ball"/>'
         '<origin xyz="0 0 -8"/></joint>'
@@ -1597,7 +1619,7 @@ def test_wheels_that_point_to_one_side_explain_a_small_error_to_this_side():
 
 FLAP = (
     '<link name="flap"><inertial><origin xyz="0.1 0 0"/><mass value="1"/>'
-    '<inertia ixx="0.002" iyy="0.002" izz="0.002"/></inertial><collision>'
+    '<inertia ixx="0.002" iyy="0.002" izz="0.002" ixy="0" ixz="0" iyz="0"/></inertial><collision>'
     '<origin xyz="0.1 0 0"/><geometry><box size="0.2 0.1 0.02"/></geometry></collision></link>'
     '<joint name="flap_joint" type="revolute"><parent link="base"/><child link="flap"/>'
     '<origin xyz="0.15 0 {z}"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" '

@@ -8,11 +8,14 @@ from cartwheel.codes.robot import SKID_STEERING
 from cartwheel.corpus import try_robot
 
 BASE = (
-    '<link name="base"><inertial><mass value="20"/><inertia ixx="0.5" iyy="0.5" izz="0.5"/>'
+    '<link name="base">'
+    '<inertial><mass value="20"/><inertia ixx="0.5" iyy="0.5" izz="0.5" ixy="0" ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><box size="0.4 0.3 0.05"/></geometry></collision></link>'
 )
 WHEEL = (
-    '<link name="{n}"><inertial><mass value="0.5"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-3"/>'
+    '<link name="{n}">'
+    '<inertial><mass value="0.5"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-3" ixy="0" '
+    'ixz="0" iyz="0"/>'
     '</inertial><collision><geometry><cylinder radius="0.1" length="0.04"/></geometry></collision>'
     '</link><joint name="{n}_joint" type="continuous"><parent link="base"/><child link="{n}"/>'
     '<origin xyz="{x} {y} 0" rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint>'

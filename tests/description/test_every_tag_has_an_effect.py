@@ -284,8 +284,10 @@ ROBOT = """
   <collision><geometry><capsule radius="2" length="3"/></geometry></collision>
 </link>
 <link name="arm"><visual><geometry><sphere radius="1"/></geometry></visual>
-  <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
-<link name="tip"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+  <inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="tip"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <link name="cam"/><link name="end"/>
 <joint name="j" type="revolute"><origin xyz="0 0 1" rpy="0 1 0"/><parent link="base"/>
   <child link="arm"/><axis xyz="0 1 0"/><limit lower="-1" upper="2" effort="5" velocity="2"/>

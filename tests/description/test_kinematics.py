@@ -11,7 +11,10 @@ from cartwheel.description.model import Axis, Joint, Link, RobotDescription
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 
 
 def arm(*extra):

@@ -39,6 +39,12 @@ def test_a_long_number():
         )
 
 
+def test_long_numbers_in_a_joint():
+    digits = "1" * 100_000 + "x"
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/><calibration rising="'
+    load_text(f'<robot name="r"><link name="a"/><link name="b"/>{joint}{digits}"/></joint></robot>')
+
+
 @pytest.mark.parametrize("begin", ["<!--", "<![CDATA["])
 @pytest.mark.parametrize("kind", [str, str.encode])
 def test_comments_without_an_end(begin, kind):

@@ -14,7 +14,10 @@ from cartwheel.description.files.package_folders import share
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import DescriptionError
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 URDF = f'<robot name="r"><link name="a">{BODY}</link></robot>'
 XACRO = (
     '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'

@@ -31,7 +31,8 @@ def generate_launch_description():
     ])
 """
 INERTIAL = (
-    '<inertial><mass value="${mass}"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+    '<inertial><mass value="${mass}"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial>'
     '<collision><geometry><box size="0.3 0.3 0.1"/></geometry></collision>'
 )
 HEAD = '<robot name="bot" xmlns:xacro="http://www.ros.org/wiki/xacro">'

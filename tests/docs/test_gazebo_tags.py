@@ -17,7 +17,8 @@ PAGE = (ROOT / "docs" / "gazebo-tags.md").read_text()
 ROW = re.compile(r"^\| `(<.*?>)` \| (yes|note|warning) \| (.*) \|$", re.MULTILINE)
 SEVERITY = {"note": "info", "warning": "warning"}
 BODY = (
-    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial><collision><geometry>'
+    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>'
     '<box size="1 1 1"/></geometry></collision><visual><geometry><box size="1 1 1"/></geometry>'
     "</visual>"
 )

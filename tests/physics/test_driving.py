@@ -295,23 +295,24 @@ def test_a_ball_on_a_joint_that_cannot_roll_forward_is_a_caster(make, axis):
 
 
 CASTERS = """<robot name="cart"><link name="base"><inertial><origin xyz="0 0 0.02"/>
-  <mass value="16"/><inertia ixx="0.34" iyy="0.6" izz="0.93"/></inertial></link>{parts}
+  <mass value="16"/>
+  <inertia ixx="0.34" iyy="0.6" izz="0.93" ixy="0" ixz="0" iyz="0"/></inertial></link>{parts}
 <gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
   <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>
   <wheel_separation>0.52</wheel_separation><wheel_diameter>0.2</wheel_diameter></plugin></gazebo>
 </robot>"""
 HEAVY_WHEEL = """<link name="{side}"><inertial><mass value="1.3"/>
-  <inertia ixx="0.004" iyy="0.0075" izz="0.004"/></inertial><collision>
+  <inertia ixx="0.004" iyy="0.0075" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial><collision>
   <origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.1" length="0.03"/></geometry>
   </collision></link>
 <joint name="{side}_joint" type="continuous"><origin xyz="0 {y} 0.055"/><axis xyz="0 1 0"/>
   <parent link="base"/><child link="{side}"/></joint>"""
 SWIVEL = """<link name="fork_{i}"><inertial><mass value="0.007"/>
-  <inertia ixx="1.4e-6" iyy="1.4e-6" izz="1.3e-7"/></inertial></link>
+  <inertia ixx="1.4e-6" iyy="1.4e-6" izz="1.3e-7" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="swivel_{i}" type="continuous"><origin xyz="{at} 0" rpy="0 0 {yaw}"/>
   <axis xyz="0 0 1"/><parent link="base"/><child link="fork_{i}"/></joint>
 <link name="roll_{i}"><inertial><mass value="0.004"/>
-  <inertia ixx="2.5e-7" iyy="4.8e-7" izz="2.5e-7"/></inertial><collision>
+  <inertia ixx="2.5e-7" iyy="4.8e-7" izz="2.5e-7" ixy="0" ixz="0" iyz="0"/></inertial><collision>
   <origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.015" length="0.01"/></geometry>
   </collision></link>
 <joint name="roll_{i}" type="continuous"><origin xyz="-{trail} 0 -0.03"/><axis xyz="0 1 0"/>

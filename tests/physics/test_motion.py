@@ -204,7 +204,8 @@ def test_what_follows_another_joint_is_not_locked_by_equal_limits(make):
               <limit lower="-1" upper="1" effort="9" velocity="9"/></joint>
             <joint name="follow" type="revolute"><parent link="world"/><child link="b"/>
               <limit effort="9" velocity="9"/><mimic joint="lead"/></joint></robot>""".format(
-                i='<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+                i='<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" '
+                'iyz="0"/></inertial>'
             )
         ),
         ground=None,

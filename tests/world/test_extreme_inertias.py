@@ -19,7 +19,8 @@ def test_a_point_mass_fixed_to_another_body_adds_its_mass(make):
     """Stands off its holder: together they swing as a body with m r² more."""
     robot = load_text(
         """<robot name="r"><link name="world"/><link name="arm"><inertial><mass value="1"/>
-        <inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link><link name="tip"><inertial>
+        <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+        </link><link name="tip"><inertial>
         <mass value="2"/></inertial></link>
         <joint name="hinge" type="continuous"><parent link="world"/><child link="arm"/>
         <axis xyz="0 0 1"/></joint>
@@ -34,7 +35,8 @@ def test_a_part_that_weighs_next_to_nothing_is_built(make):
     """As drawing programs write a frame without a body: masses of 1e-15 kg."""
     robot = load_text(
         """<robot name="r"><link name="base"><inertial><mass value="3"/>
-        <inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link><link name="frame"><inertial>
+        <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+        </link><link name="frame"><inertial>
         <mass value="4.19E-15"/><inertia ixx="1.68E-27" iyy="1.68E-27" izz="1.68E-27" ixy="0"
         ixz="7.68E-44" iyz="0"/></inertial></link><joint name="weld" type="fixed">
         <parent link="base"/><child link="frame"/></joint></robot>"""

@@ -9,7 +9,7 @@ from cartwheel.simulation.models.couplings import couplings
 
 BODY = (
     '<inertial><mass value="{mass}"/><origin xyz="0.1 0 0"/>'
-    '<inertia ixx="0.001" iyy="0.001" izz="0.001"/></inertial>'
+    '<inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial>'
 )
 LEAD = (
     f'<link name="world"/><link name="arm">{BODY.format(mass=1)}</link>'

@@ -21,7 +21,7 @@ from cartwheel.description.elements.node import Node
 from cartwheel.description.inertia import impossibility
 from cartwheel.description.model import WITHOUT_POSITION
 
-_PLAIN = {"ixx": "1", "iyy": "1", "izz": "1"}
+_PLAIN = {"ixx": "1", "ixy": "0", "ixz": "0", "iyy": "1", "iyz": "0", "izz": "1"}
 _WEIGHTLESS = 1e-9
 """Mass of a link whose stated mass is not positive, kg, so that sums hardly contain it."""
 

@@ -59,6 +59,8 @@ def _relevant(subject: Subject) -> Iterator[Diagnostic]:
     for diagnostic in diagnostics_of(subject):
         if diagnostic.code in ABSENT or has_place(diagnostic):
             continue
+        if diagnostic.code is codes.LINK_CUT_SHORT and id(diagnostic.origin) in gaps:
+            continue
         # Omit elements that are incomplete only because a part was unreadable.
         follows = "missing" in diagnostic.values and diagnostic.values.get("link") in lacking
         follows |= diagnostic.code in _OF_GAPS and id(diagnostic.origin) in gaps

@@ -53,3 +53,6 @@ TEXT_AFTER_NUMBER = Code(
 GAZEBO_IGNORES = Code(
     "CW350", "gazebo-ignores", "warning", "Gazebo ignores a tag that Cartwheel reads"
 )
+LINK_CUT_SHORT = Code(
+    "CW351", "link-cut-short", "error", "ROS and Gazebo stop reading a link before its end"
+)

@@ -174,6 +174,7 @@ def _load_faults(
         coded(description.diagnostics, _UNLIMITED),
         _material_twice(description),
         _refused(description),
+        _cut_short(description),
         coded(verdict.observed, _NOT_EXPANDED),
     )
     for reason in reasons:
@@ -225,6 +226,18 @@ def _refused(description: RobotDescription) -> Diagnostic | None:
             for each in description.diagnostics
             if each.values.get("refused") is True
             or (each.code is devices.NOISE_TYPE_UNKNOWN and each.severity == "error")
+        ),
+        None,
+    )
+
+
+def _cut_short(description: RobotDescription) -> Diagnostic | None:
+    """The first link of which ROS and Gazebo do not read the inertia or collisions."""
+    return next(
+        (
+            each
+            for each in description.diagnostics
+            if each.values.get("cut") is True and each.severity == "error"
         ),
         None,
     )

@@ -4,7 +4,10 @@ from tests.coded import placed
 
 from cartwheel.description import load_robot, load_text
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 PART = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
 
 

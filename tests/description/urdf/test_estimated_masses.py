@@ -10,7 +10,10 @@ from cartwheel.description import load_text
 
 BOX = '<{0}><origin xyz="0 0 0.1"/><geometry><box size="0.2 0.3 0.4"/></geometry></{0}>'
 BALL = '<{0}><geometry><sphere radius="0.1"/></geometry></{0}>'
-MASS = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
+MASS = (
+    '<inertial><mass value="{m}"/>'
+    '<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 
 
 def robot(*parts):

@@ -9,7 +9,10 @@ from cartwheel.description import model as m
 from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 SHAPE = '<geometry><box size="1 1 1"/></geometry>'
 LINKS = (
     f'<link name="base">{BODY}<visual>{SHAPE}'

@@ -8,7 +8,10 @@ from tests.coded import placed
 from cartwheel.description import load_text
 from cartwheel.geometry import Pose
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 COLLISION = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
 LINKS = (
     f'<link name="base">{BODY}{COLLISION}</link><link name="mast"/><link name="arm">{BODY}</link>'

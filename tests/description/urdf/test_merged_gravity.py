@@ -6,7 +6,10 @@ from tests.coded import coded
 from cartwheel.codes.devices import LUMPED_LINK
 from cartwheel.description import load_text
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 
 
 def robot(*tags, preserved=""):

@@ -10,8 +10,10 @@ def test_leftovers_are_notes_and_the_unknown_is_a_warning():
         """<robot name="r">
         <link name="a" type="laser">
         <collision><geometry name="g"><box size="1 1 1"/></geometry></collision>
-        <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
-        <link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
+        <inertial><mass value="1"/>
+        <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+        <link name="b"><inertial><mass value="1"/>
+        <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
         </link><joint name="j" type="continuous"><parent link="a"/><child link="b"/>
         <dynamics damping="1" D="2"/><limit effort="1" velocity="1" k_velocity="3" vlocity="2"/>
         <joint_properties damping="1"/></joint></robot>"""
@@ -34,7 +36,8 @@ def test_a_box_of_no_size_at_all_is_a_frame():
     def severities(size):
         robot = load_text(
             f"""<robot name="r"><link name="a"><visual><geometry><box size="{size}"/></geometry>
-            </visual><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+            </visual><inertial><mass value="1"/>
+            <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
             </robot>"""
         )
         return [each.severity for each in robot.diagnostics]

@@ -13,7 +13,10 @@ from cartwheel.description import model as m
 from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose
 
-BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+BODY = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 
 OPEN_VISUAL = '<link name="a"><visual>'
 CLOSE_VISUAL = "</visual></link>"
@@ -37,7 +40,10 @@ def joint(name, parent, child, content="", kind="fixed"):
 
 def with_part(inertia, mass=1):
     """A trunk of 50 kg with a part on a hinge, whose mass and inertia stand in line 3."""
-    trunk = '<inertial><mass value="50"/><inertia ixx="9" iyy="9" izz="9"/></inertial>'
+    trunk = (
+        '<inertial><mass value="50"/>'
+        '<inertia ixx="9" iyy="9" izz="9" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
     return urdf(
         link("trunk", trunk) + '<link name="a">',
         f'<inertial><mass value="{mass}"/>{inertia}</inertial></link>',
@@ -72,7 +78,8 @@ def test_a_link_with_all_its_parts():
     )
     (base,) = robot.links
     assert robot.canonical_link == "base"
-    assert not robot.diagnostics
+    # ROS and Gazebo know no capsule.
+    assert [named(each) for each in robot.diagnostics] == ["link-cut-short"]
     assert base.inertial.mass == robot.mass == 2
     assert base.inertial.pose == Pose.from_xyz_rpy((0, 0, 1), (0, 0, 1.5))
     i = base.inertial
@@ -284,14 +291,10 @@ ERRORS = [
         "value-invalid",
     ),
     (
-        urdf('<link name="a">', "<inertial/></link>"),
-        3,
-        "tag-missing",
-    ),
-    (
         urdf(
             '<link name="a">',
-            '<inertial><mass value="1"/><inertia ixx="-2" iyy="-1" izz="-1"/></inertial></link>',
+            '<inertial><mass value="1"/><inertia ixx="-2" iyy="-1" izz="-1" '
+            'ixy="0" ixz="0" iyz="0"/></inertial></link>',
         ),
         3,
         "inertia-impossible",
@@ -450,26 +453,34 @@ def test_a_mesh_with_a_scale_of_0_is_left_out():
 @pytest.mark.parametrize("mass", [1, 40])
 def test_an_inertia_without_a_moment_above_zero_is_an_error(mass):
     with pytest.raises(DescriptionError) as caught:
-        load(with_part('<inertia ixx="-1" iyy="-1" izz="-1"/>', mass=mass))
+        load(with_part('<inertia ixx="-1" iyy="-1" izz="-1" ixy="0" ixz="0" iyz="0"/>', mass=mass))
     assert named(caught.value) == "inertia-impossible"
     assert caught.value.origin.line == 3
 
 
 def test_a_moment_below_zero_is_raised_with_the_others():
-    made = load(with_part('<inertia ixx="-0.1" iyy="1" izz="2"/>')).link("a").inertial
+    made = (
+        load(with_part('<inertia ixx="-0.1" iyy="1" izz="2" ixy="0" ixz="0" iyz="0"/>'))
+        .link("a")
+        .inertial
+    )
     # The first counts as next to nothing; half of what is missing goes to each of the two.
     assert (made.ixx, made.iyy, made.izz) == pytest.approx((0.5, 1.5, 2.0), abs=1e-5)
 
 
 def test_an_inertia_that_no_body_has_is_mended_on_a_main_part_too():
     """The largest moment stays, and the others are raised until they add up to it."""
-    made = load(with_part('<inertia ixx="0.5" iyy="1" izz="2"/>', mass=40)).link("a").inertial
+    made = (
+        load(with_part('<inertia ixx="0.5" iyy="1" izz="2" ixy="0" ixz="0" iyz="0"/>', mass=40))
+        .link("a")
+        .inertial
+    )
     assert (made.ixx, made.iyy, made.izz) == pytest.approx((0.75, 1.25, 2.0))
 
 
 WARNINGS = [
     (
-        with_part('<inertia ixx="1" iyy="1" izz="3"/>'),
+        with_part('<inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/>'),
         "robot.urdf:3 warning inertia-impossible",
     ),
     (
@@ -477,7 +488,7 @@ WARNINGS = [
         "robot.urdf:3 warning inertia-impossible",
     ),
     (
-        with_part('<inertia ixx="1" iyy="1" izz="0"/>'),
+        with_part('<inertia ixx="1" iyy="1" izz="0" ixy="0" ixz="0" iyz="0"/>'),
         "robot.urdf:3 warning inertia-impossible",
     ),
     (
@@ -647,7 +658,8 @@ def test_a_shape_without_geometry_is_left_out(kind, content):
     (only,) = robot.links
     assert not only.visuals + only.collisions
     (said,) = robot.diagnostics
-    assert (said.code, said.severity) == (tags.TAG_MISSING, "error")
+    assert said.code is tags.LINK_CUT_SHORT
+    assert said.severity == ("error" if kind == "collision" else "warning")
     assert said.values["left_out"] == kind
     assert said.origin.line == 2
 

@@ -16,7 +16,10 @@ ROBOT = """<robot name="r">
 <axis xyz="0 0 0"/></joint>
 <gazebo{reference}>{plugins}</gazebo>
 </robot>"""
-MASS = '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+MASS = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 CLASSIC = '<plugin name="p" filename="libgazebo_ros_p3d.so"><bodyName>base</bodyName></plugin>'
 CAMERA = (
     '<sensor name="s" type="camera"><plugin name="p" filename="libgazebo_ros_camera.so"/></sensor>'

@@ -6,7 +6,7 @@ from cartwheel.description import load_text
 from cartwheel.dialects.ros_control.interfaces import SYSTEMS, ros2_control
 
 ROBOT = """<robot name="arm"><link name="base"/><link name="upper"><inertial><mass value="1"/>
-<inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/></joint>
 {systems}<gazebo><plugin name="control" filename="{plugin}"/></gazebo></robot>"""
 SYSTEM = """<ros2_control name="{name}" type="system"><hardware><plugin>{hardware}</plugin>

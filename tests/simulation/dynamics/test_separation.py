@@ -96,9 +96,10 @@ def test_an_obstacle_that_jumps_onto_a_model_separates_gently_and_says_so(world)
 
 
 WALKER = """<robot name="walker"><link name="pelvis"><inertial><mass value="10"/>
-  <inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>{}</robot>"""
+  <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>{}</robot>"""
 LEG = """<link name="{name}"><inertial><origin xyz="0 0 -0.2"/><mass value="2"/>
-  <inertia ixx="0.03" iyy="0.03" izz="0.003"/></inertial><collision><origin xyz="0.1 0 -0.2"/>
+  <inertia ixx="0.03" iyy="0.03" izz="0.003" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><origin xyz="0.1 0 -0.2"/>
   <geometry><box size="0.06 0.06 0.4"/></geometry></collision></link>
   <joint name="{name}_joint" type="revolute"><parent link="{parent}"/><child link="{name}"/>
   <origin xyz="0 {y} {z}"/><axis xyz="0 1 0"/>

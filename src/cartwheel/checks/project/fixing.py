@@ -21,7 +21,7 @@ from cartwheel.errors import Diagnostic
 FIXABLE = frozenset({
     tags.TAG_IGNORED, devices.PLUGIN_PARAMETER_UNKNOWN, robot.LIMIT_IN_DEGREES,
     robot.ANGLE_IN_DEGREES, robot.INERTIA_IMPOSSIBLE, robot.INERTIA_GEOMETRY_MISMATCH,
-    robot.WHEEL_SEPARATION_MISMATCH, robot.WHEEL_DIAMETER_MISMATCH,
+    robot.WHEEL_SEPARATION_MISMATCH, robot.WHEEL_DIAMETER_MISMATCH, tags.LINK_CUT_SHORT,
 })  # fmt: skip
 """The codes with fixable suggestions."""
 _MISSPELT = (tags.TAG_IGNORED, devices.PLUGIN_PARAMETER_UNKNOWN)

@@ -23,8 +23,13 @@ from cartwheel.errors import DescriptionError, Diagnostic
 from cartwheel.geometry import Pose
 
 
-def read_inertial(node: Node) -> Inertial:
-    mass = node.require_child("mass").number_of("value")
+def read_inertial(node: Node) -> Inertial | None:
+    """The mass and inertia of a link; None without a mass, which `cut_links` reports."""
+    stated = node.child("mass")
+    if stated is None or stated.get("value") is None:
+        node.mark()
+        return None
+    mass = stated.number_of("value")
     if mass > HEAVIEST:
         raise node.fail(f"a mass must be at most {HEAVIEST:g} kg (got {mass:g})")
     tensor = node.child("inertia")

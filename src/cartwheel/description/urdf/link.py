@@ -99,7 +99,9 @@ def _warn_nameless(
             "tag": "material",
             "link": link,
             "left_out": "collision" if collisions else "visual",
+            "cut": True,
         },
+        severity="error" if collisions else "warning",
     )
 
 
@@ -126,7 +128,9 @@ def _visual(node: Node, default: str, ctx: UrdfContext) -> Visual | None:
 
 
 def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:
-    """The shape of a visual or collision; None if it is skipped."""
+    """The shape of a visual or collision; None if it is skipped. `cut_links` reports a missing
+    shape.
+    """
     geometry = owner.child("geometry")
     shapes = [] if geometry is None else geometry.all(*SHAPES)
     for other in shapes[1:]:
@@ -150,16 +154,6 @@ def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape 
             code=tags.TYPE_UNKNOWN,
             values={"name": wrong.tag, "meant": meant(wrong.tag, SHAPES), "link": link},
         )
-    what = "has no <geometry>" if geometry is None else "has an empty <geometry>"
-    ctx.report(
-        tags.TAG_MISSING.diagnostic(
-            f'a {kind} of link "{link}" {what}, so the {kind} is ignored',
-            origin=owner.origin,
-            hint=f"Add <geometry> with one of: {', '.join(SHAPES)}. ROS and Gazebo do not load "
-            "this robot.",
-            values={"missing": "geometry", "link": link, "left_out": kind},
-        )
-    )
     return None
 
 

@@ -20,6 +20,7 @@ from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
 from cartwheel.description.sdf.inserting import insert
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
 from cartwheel.description.urdf.context import UrdfContext
+from cartwheel.description.urdf.cut_links import cut_links
 from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.urdf.harmless import HARMLESS
@@ -61,6 +62,7 @@ def read_urdf(
     root.get("version")
     ctx = UrdfContext(packages=packages, diagnostics=list(diagnostics))
     ctx.diagnostics.extend(refusals(root))
+    ctx.diagnostics.extend(cut_links(root))
     read_materials(root, ctx)
     link_nodes = root.all("link")
     if not link_nodes:

@@ -17,7 +17,8 @@ from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic, Value
 
 REFUSED = "ROS and Gazebo do not load the robot"
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*", re.ASCII)
+_NUMBER = re.compile(r"\s*+([+-]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][+-]?\d++)?+)\s*+", re.ASCII)
+"""Possessive: otherwise there would be many ways to separate the digits of a long number."""
 _INFINITE = re.compile(r"\s*[+-]?inf(inity)?\s*", re.IGNORECASE)
 _VERSION = re.compile(r"1\.[012]\.?")
 """Versions of URDF; most releases of ROS only know 1.0."""
@@ -43,6 +44,12 @@ def refusals(root: Node) -> Iterator[Diagnostic]:
     links = {name for node in _all(root, "link") if (name := node.attributes.get("name"))}
     for joint in _all(root, "joint"):
         yield from _joint(joint, links)
+
+
+def trimmed(text: str) -> str | None:
+    """The number that a text would be without the white space after it; None for other texts."""
+    number = _NUMBER.fullmatch(text)
+    return number[1] if number and text != text.rstrip() else None
 
 
 def _version(root: Node) -> Iterator[Diagnostic]:
@@ -107,8 +114,8 @@ def _number(node: Node, attribute: str, text: str, *, read: bool) -> Iterator[Di
     if _INFINITE.fullmatch(text) or (number and math.isinf(float(number[1]))):
         sign = "-" if text.lstrip().startswith("-") else ""
         yield _invalid(node, attribute, text, "is not a finite number", f"{sign}{_LARGE}")
-    elif number and text != text.rstrip():
-        yield _invalid(node, attribute, text, "ends with white space", number[1])
+    elif (instead := trimmed(text)) is not None:
+        yield _invalid(node, attribute, text, "ends with white space", instead)
     elif not number and not read:
         yield _invalid(node, attribute, text, "is not a number", "0")
 
