@@ -19,7 +19,8 @@ FINGER = (
     '</hardwareInterface></joint><actuator name="{name}_motor"/></transmission>'
 )
 GRIPPER = (
-    '<robot name="gripper"><link name="world"/><link name="palm"/>'
+    '<robot name="gripper"><link name="world"/><link name="palm"><inertial><mass value="1"/>'
+    '<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>'
     '<joint name="stand" type="fixed"><parent link="world"/><child link="palm"/></joint>'
     '{fingers}<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/>'
     '<plugin name="mimic" filename="libroboticsgroup_gazebo_mimic_joint_plugin.so">'

@@ -5,10 +5,17 @@ import re
 import pytest
 from tests.corpus.carts import cart, plugin, written
 
+from cartwheel.checks import check
 from cartwheel.codes.devices import PLUGIN_UNKNOWN
-from cartwheel.codes.robot import INERTIA_MISSING, LIMIT_INCOMPLETE, LIMIT_MISSING
+from cartwheel.codes.robot import (
+    INERTIA_MISSING,
+    LIMIT_INCOMPLETE,
+    LIMIT_MISSING,
+    MASS_NOT_POSITIVE,
+)
 from cartwheel.codes.tags import TAG_MISSING, VALUE_INVALID
 from cartwheel.corpus import try_robot
+from cartwheel.description import load_text
 
 MASS = (
     '<inertial><mass value="1"/>'
@@ -106,3 +113,47 @@ def test_gazebo_drops_driven_wheels_without_mass(tmp_path):
     light = re.sub("<inertial>.*?</inertial>", "", '<link name="left">' + wheels)
     verdict = try_robot(written(tmp_path, body + light, plugin()), standing=1.0)
     assert ("load", INERTIA_MISSING, "file") in faults(verdict)
+
+
+@pytest.mark.parametrize(
+    ("base", "lid", "upper", "fault"),
+    [
+        (MASS, "", MASS, False),
+        # Gazebo merges the lid into the base.
+        ("", MASS, MASS, False),
+        ("", "", MASS, True),
+        ("", "", "", True),
+        (MASS.replace('"1"', '"0"'), "", MASS, True),
+    ],
+)
+def test_gazebo_loads_nothing_on_a_base_without_mass_that_is_fixed_to_the_world(
+    tmp_path, base, lid, upper, fault
+):
+    path = arm(tmp_path, upper=upper, servo="")
+    text = path.read_text().replace(
+        f'<link name="base">{MASS}</link>',
+        f'<link name="base">{base}</link><link name="lid">{lid}</link><joint name="l" type="fixed">'
+        '<parent link="base"/><child link="lid"/></joint>',
+    )
+    states = '<gazebo><plugin name="s" filename="libgazebo_ros_joint_state_publisher.so"/></gazebo>'
+    path.write_text(text.replace("</robot>", f"{states}</robot>"))
+    verdict = try_robot(path, standing=1.0)
+    assert faults(verdict) == ([("load", INERTIA_MISSING, "file")] if fault else [])
+    codes = {INERTIA_MISSING, MASS_NOT_POSITIVE}
+    found = [each.values["link"] for each in check(path).findings if each.code in codes]
+    assert ("base" in found) == fault
+
+
+def test_a_fixed_joint_that_gazebo_keeps_merges_no_mass(tmp_path):
+    kept = '<gazebo reference="l"><preserveFixedJoint>true</preserveFixedJoint></gazebo>'
+    parts = (
+        LINK.format(name="world", mass=""),
+        LINK.format(name="base", mass=""),
+        JOINT.format(name="base", kind="fixed", parent="world", limit=""),
+        LINK.format(name="lid", mass=MASS),
+        '<joint name="l" type="fixed"><parent link="base"/><child link="lid"/></joint>',
+    )
+    for more, expected in (("", []), (kept, [("base",)])):
+        robot = load_text(f'<robot name="r">{"".join(parts)}{more}</robot>')
+        said = [each for each in robot.diagnostics if each.code is INERTIA_MISSING]
+        assert [each.values["links"] for each in said] == expected

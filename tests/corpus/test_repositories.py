@@ -11,8 +11,9 @@ from cartwheel.description.files.repositories import repository_of
 from cartwheel.description.launches import LaunchSearch, LaunchUse, own, own_launches
 
 ARM = (
-    '<robot name="arm"><link name="world"/><link name="base"/><link name="upper">'
-    '<inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
+    '<robot name="arm"><link name="world"/><link name="base"><inertial><mass value="1"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    '<link name="upper"><inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
     '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>'
     '<joint name="lid_hinge" type="revolute"><parent link="base"/><child link="upper"/>'

@@ -94,7 +94,7 @@ CASTER = (
     '<gazebo reference="caster"><mu1>0</mu1><mu2>0</mu2></gazebo>'
 )
 ARM = (
-    '<link name="world"/><link name="base"/><link name="upper">'
+    f'<link name="world"/><link name="base">{INERTIA.format(m=1, i=0.01)}</link><link name="upper">'
     '<inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
     '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
     '<joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>'
@@ -697,7 +697,8 @@ def test_damping_that_the_effort_limit_cannot_overcome_is_the_reason(tmp_path, t
 
 
 LIFT = (
-    '<link name="world"/><link name="base"/><link name="cart"><inertial><mass value="1"/>'
+    f'<link name="world"/><link name="base">{INERTIA.format(m=1, i=0.01)}</link>'
+    '<link name="cart"><inertial><mass value="1"/>'
     '<inertia ixx="1" iyy="1" izz="1" '
     'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="stand" type="fixed">'
     '<parent link="world"/><child link="base"/></joint><joint name="slide" type="prismatic">'

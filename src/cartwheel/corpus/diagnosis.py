@@ -190,7 +190,8 @@ def _load_faults(
 
 
 def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | None:
-    """Why Gazebo does not load a robot for it: its root link has no mass.
+    """Why Gazebo does not load a robot for it: its root link has no mass, or the link that is fixed
+    to the world.
 
     A description without plugins and sensors that no launch file starts in Gazebo may be one for
     other programs, in which links need no mass. If it falls because no link has a collision, it is
@@ -208,10 +209,10 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
     held = {joint.child for joint in description.joints}
     for each in description.diagnostics:
         links = each.values.get("links", ())
-        if each.code is robot.INERTIA_MISSING and isinstance(links, tuple):
-            roots = [name for name in links if name not in held]
-            if roots:
-                return each
+        if each.code is not robot.INERTIA_MISSING or not isinstance(links, tuple):
+            continue
+        if each.values.get("held") is True or any(name not in held for name in links):
+            return each
     return None
 
 

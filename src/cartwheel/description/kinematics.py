@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -36,6 +36,19 @@ def carried(joints: Iterable[Joint], links: Iterable[str]) -> set[str]:
         found |= more
         waiting += more
     return found
+
+
+def held_parts(joints: Sequence[Joint]) -> dict[str, list[str]]:
+    """The links that fixed joints hold in the world, each with those that Gazebo merges into it.
+
+    Args:
+        joints: The joints of a URDF.
+    """
+    bases = [each.child for each in joints if each.type == "fixed" and each.parent == "world"]
+    merged = [each for each in joints if each.type == "fixed" and not each.preserve_fixed]
+    found = {base: carried(merged, [base]) for base in bases}
+    order = [*bases, *(each.child for each in joints)]
+    return {base: [name for name in dict.fromkeys(order) if name in found[base]] for base in bases}
 
 
 def link_poses(description: RobotDescription, positions: Mapping[str, float]) -> dict[str, Pose]:

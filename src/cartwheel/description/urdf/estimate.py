@@ -13,6 +13,7 @@ import numpy as np
 
 from cartwheel.codes import robot
 from cartwheel.description.inertia import impossibility, principal_moments
+from cartwheel.description.kinematics import held_parts
 from cartwheel.description.meshes import MeshError, surface_of
 from cartwheel.description.model import Box, Collision, Inertial, Joint, Link, Mesh, Visual
 from cartwheel.description.sdf.links.inertia import WATER, inertial_of
@@ -54,6 +55,30 @@ def with_masses(
     if roots:
         _warn(roots, found, tree, ctx)
     return tuple(found.get(link.name, link) for link in links)
+
+
+def warn_held(links: Sequence[Link], joints: Sequence[Joint], ctx: UrdfContext) -> None:
+    """Warns about parts without any mass that are fixed to the world.
+
+    sdformat merges no link into the world. It leaves out a link without a mass and what hangs on
+    it, or, since 9.10, only the link, so that the joints below it have no parent.
+    """
+    by_name = {link.name: link for link in links}
+    for base, names in held_parts(joints).items():
+        part = [by_name[name] for name in names if name in by_name]
+        if not part or any(link.inertial is not None for link in part):
+            continue
+        link = by_name[base]
+        like = _of_shapes(link) or _speck(link.origin)
+        ctx.warn(
+            robot.INERTIA_MISSING,
+            f'neither link "{base}", which is fixed to the world, nor a link fixed to it has an '
+            "<inertial>. Gazebo ignores the link and everything attached to it; Cartwheel needs no "
+            "mass for it",
+            origin=link.origin,
+            hint=f'Add to link "{base}": {inertial_text(like)}',
+            values={"links": (base,), "held": True},
+        )
 
 
 def inertial_text(inertial: Inertial) -> str:

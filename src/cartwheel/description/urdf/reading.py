@@ -21,7 +21,7 @@ from cartwheel.description.sdf.inserting import insert
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
 from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.description.urdf.cut_links import cut_links
-from cartwheel.description.urdf.estimate import with_masses
+from cartwheel.description.urdf.estimate import warn_held, with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.urdf.harmless import HARMLESS
 from cartwheel.description.urdf.inertia import judged_inertia, mark_refused
@@ -98,6 +98,8 @@ def read_urdf(
     ctx.diagnostics.extend(overruled)
     ctx.diagnostics.extend(check_contact_sensors(links))
     links = _without_world(links, tree, ctx)
+    if not tags.static:
+        warn_held(links, joints, ctx)
     links = list(with_masses(links, tree, ctx, static=tags.static))
     canonical_link = links[0].name if tree.root == WORLD else tree.root
     links, joints, inserted = insert(

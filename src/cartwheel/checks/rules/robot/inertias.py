@@ -35,6 +35,7 @@ from cartwheel.description.inertia import (
     is_refused,
     refused_groups,
 )
+from cartwheel.description.kinematics import held_parts
 from cartwheel.description.model import MOMENTS, Inertial, Link
 from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic, Origin
@@ -69,16 +70,24 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
             group = [name for name in parts if name not in robot.in_sdf]
             if root == "world" or root in robot.mended or root in robot.in_sdf:
                 continue
+            holder = robot.inbound.get(root)
+            held = holder is not None and holder.type == "fixed"
+            if held:
+                # Gazebo merges no link into the world.
+                group = [
+                    each for each in group if each in held_parts(robot.description.joints)[root]
+                ]
             if any(is_stated(robot.links[name]) for name in group):
                 continue
-            holder = robot.inbound.get(root)
-            if holder is not None and holder.type == "fixed":
-                continue  # fixed to the world
             shaped = next((name for name in group if robot.solids(name)), None)
             link = robot.links[shaped or root]
             what, consequence = f'the root link "{root}"', "does not load the robot"
             if holder is not None:
-                what = f'the moving link "{root}"'
+                what = (
+                    f'link "{root}", which is fixed to the world,'
+                    if held
+                    else f'the moving link "{root}"'
+                )
                 consequence = "ignores the link and everything attached to it"
             yield robot_codes.INERTIA_MISSING.diagnostic(
                 message=f"{what} has no <inertial>, so Gazebo {consequence}",
