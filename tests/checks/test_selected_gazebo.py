@@ -10,7 +10,8 @@ from cartwheel.description.launches import launches_near
 
 XACRO = """<robot name="cart" xmlns:xacro="http://wiki.ros.org/xacro">
   <xacro:arg name="gazebo" default="classic"/>
-  <link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
+  <link name="base"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
     <collision><geometry><box size="1 1 1"/></geometry></collision></link>
   <xacro:if value="${{'$(arg gazebo)' == 'classic'}}">
     <gazebo><plugin name="p" filename="libgazebo_ros_planar_move.so"/></gazebo>

@@ -14,7 +14,7 @@ MISSING = '<visual><geometry><mesh filename="body.stl"/></geometry></visual>'
 def base(moment, more=""):
     """The cart, whose body has three equal moments of inertia in kg m²."""
     inertia = USUAL.replace("0.02", f"{moment:g}")
-    text = cart().replace(f"{USUAL}/></inertial>", f"{inertia}/></inertial>{more}", 1)
+    text = cart().replace(USUAL, inertia, 1).replace("</inertial>", f"</inertial>{more}", 1)
     assert moment == 0.02 or inertia in text
     return text
 

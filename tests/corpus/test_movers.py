@@ -326,7 +326,9 @@ def test_a_plugin_whose_source_applies_forces_is_no_fault_if_a_drive_moves_the_r
     in_package(tmp_path, "void Thing::OnUpdate() { link->AddForce(drag); }")
     hatch = (
         '<link name="hatch"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"'
-        '/></inertial></link><joint name="hinge" type="revolute"><parent link="base"/><child '
+        " "
+        'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="hinge" type="revolute">'
+        '<parent link="base"/><child '
         'link="hatch"/><limit lower="-1" upper="1" effort="5" velocity="2"/></joint>'
     )
     path = written(tmp_path, cart(), hatch, plugin(), OTHER.format("libown_thing.so"))
