@@ -102,6 +102,23 @@ def test_a_spawner_may_wait_for_a_manager_outside_of_gazebo(robot):
     assert try_robot(robot(spawner=IN_ROBOT, more=node), standing=0.5).good
 
 
+def test_controllers_of_a_manager_outside_of_gazebo_are_not_those_of_the_robot(robot):
+    """Their parameters may be in the program of the driver."""
+    node = "Node(package='controller_manager', executable='{}'{}),"
+    more = node.format("ros2_control_node", ", namespace='driver'")
+    words = ", arguments=['real', '-c', '{}']"
+    other = node.format("spawner", words.format("/driver/controller_manager"))
+    file = robot(more=more + other)
+    verdict = try_robot(file, standing=0.5)
+    assert verdict.good, verdict.faults
+    assert (verdict.spawned, verdict.observed) == (("base",), ())
+    launch = file.parent / "launch/sim.launch.py"
+    launch.write_text(launch.read_text().replace("/driver/", "/"))
+    verdict = try_robot(file, standing=0.5)
+    assert verdict.spawned == ("base", "real")
+    assert [each.code for each in verdict.observed] == [CONTROLLER_UNDEFINED]
+
+
 @pytest.mark.parametrize(("prefix", "space"), [("", "/robot"), ("/robot/", None)])
 def test_parameters_for_a_manager_in_another_namespace(robot, prefix, space):
     file = robot(prefix, space, IN_ROBOT if space else PLAIN)

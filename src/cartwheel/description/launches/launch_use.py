@@ -65,8 +65,9 @@ class LaunchUse:
     it. Those whose namespace is uncertain are left out."""
     sought_in_ros2: tuple[tuple[str, str], ...] = ()
     """The same for spawners of ROS 2."""
-    managed: bool = False
-    """Whether it starts a controller manager of ROS 2 outside of Gazebo."""
+    managers: frozenset[str] = frozenset()
+    """The namespaces in which it starts controller managers of ROS 2 outside of Gazebo; `UNKNOWN`
+    is among them if one is uncertain."""
     places: tuple[tuple[str, Path], ...] = ()
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""

@@ -19,7 +19,7 @@ from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyErro
 from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.python_launch import read_python
 from cartwheel.description.launches.python_variables import Place
-from cartwheel.description.launches.use import Facts
+from cartwheel.description.launches.use import ABSENT, Facts
 from cartwheel.description.launches.variants import beside
 from cartwheel.description.launches.xml_launch import read_xml
 from cartwheel.errors import Origin
@@ -205,6 +205,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
         described.append((None, {}))
     found = []
     spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))
+    shown = set[int]() if words else _only_shown(facts)
     worlds = tuple(map(facts.found_world, dict.fromkeys(facts.gazebos.worlds)))
     for number, (description, arguments) in enumerate(described):
         known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
@@ -226,10 +227,10 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 unfound=tuple(facts.unfound),
                 sought=tuple(dict.fromkeys(facts.sought)),
                 sought_in_ros2=tuple(dict.fromkeys(facts.sought_in_ros2)),
-                managed=facts.managed,
+                managers=frozenset(facts.managers),
                 places=tuple(dict.fromkeys(facts.places)),
                 lacking=bool(facts.required),
-                simulated=facts.simulated,
+                simulated=facts.simulated and number not in shown,
                 guessed=description is not None and _is_whole(description.name, words),
                 world=facts.world,
                 gazebos=frozenset(facts.gazebos.kinds),
@@ -242,6 +243,24 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
             )
         )
     return found
+
+
+def _only_shown(facts: Facts) -> set[int]:
+    """The numbers of descriptions that a launch file does not spawn, although it spawns the same
+    file with other arguments, such as those for a driver of the real robot.
+    """
+    spawned = [
+        facts.published.get(each.source, ABSENT) if each.described is None else each.described
+        for each in facts.spawns
+    ]
+    if ABSENT in spawned:
+        return set()
+    files = {facts.descriptions[number][0] for number in spawned}
+    return {
+        number
+        for number, (file, _) in enumerate(facts.descriptions)
+        if file in files and number not in spawned
+    }
 
 
 def _is_whole(name: str, words: Collection[str]) -> bool:

@@ -91,8 +91,8 @@ class Facts:
     """See `LaunchUse.sought`."""
     sought_in_ros2: list[tuple[str, str]] = field(default_factory=list)
     """See `LaunchUse.sought_in_ros2`."""
-    managed: bool = False
-    """See `LaunchUse.managed`."""
+    managers: set[str] = field(default_factory=set)
+    """See `LaunchUse.managers`."""
     lost: list[Path] = field(default_factory=list)
     """Such files that do not exist."""
     unfound: list[Unfound] = field(default_factory=list)
@@ -351,7 +351,8 @@ class Facts:
             unsure = UNKNOWN in space or (executable == "spawner.py" and command.space == space)
             if not unsure and not any(UNKNOWN in word for word in words):
                 self.sought_in_ros2 += ((command.space, name) for name in command.started)
-        self.managed |= executable == "ros2_control_node"
+        if executable == "ros2_control_node":
+            self.managers.add(UNKNOWN if UNKNOWN in space else space.strip("/"))
         if package == "rosservice" and words[:1] == ["call"]:
             self._control(by_service(words[1:]))
 

@@ -32,6 +32,7 @@ from cartwheel.dialects.ros_control.launched.names import as_named, last_names, 
 from cartwheel.dialects.ros_control.launched.problems import (
     misplaced,
     misplaced_names,
+    of_other_managers,
     only_loaded,
     undefined,
     unfound,
@@ -171,9 +172,15 @@ def selection(
         # The robot's own tags name the files.
         own = starter_of(robot, use, launches)
         names = () if own is None else own.spawned
+    starting = starter or starter_of(robot, use, launches)
+    others = of_other_managers(robot, starting, launches)
+    if starting is not None and others:
+        starting = replace(
+            starting, spawned=tuple(name for name in starting.spawned if name not in others)
+        )
+        names = tuple(name for name in names if name not in others)
     names = named_in(names, files, robot)
     lost = unreadable(starter.controllers, names) if starter is not None else ()
-    starting = starter or starter_of(robot, use, launches)
     reported = undefined(robot, starting, within) if is_controlled(robot) else ()
     idle = () if starting is None else named_in(starting.loaded, files, robot)
     elsewhere = misplaced if is_of_ros1(robot) else unmanaged_in_ros2

@@ -174,8 +174,24 @@ def unmanaged_in_ros2(
     """Controllers whose spawner of ROS 2 waits for a controller manager in a namespace that has
     none, in a launch file that starts the robot in Gazebo.
     """
-    if starter is not None and starter.simulated and not starter.managed:
+    if starter is not None and starter.simulated and UNKNOWN not in starter.managers:
         yield from _unmanaged(robot, starter, launches, ros2=True)
+
+
+def of_other_managers(
+    robot: RobotDescription, starter: LaunchUse | None, launches: Sequence[LaunchUse]
+) -> frozenset[str]:
+    """The controllers that a launch file starts only with managers outside of Gazebo, such as that
+    of the driver of a real robot, whose namespace is another one.
+    """
+    place = _manager_place(robot, launches, ros2=True) if starter and starter.managers else None
+    if starter is None or place is None:
+        return frozenset()
+    spaces: dict[str, set[str]] = {}
+    for space, name in starter.sought_in_ros2:
+        spaces.setdefault(name, set()).add(space.strip("/"))
+    others = starter.managers - {place[0]}
+    return frozenset(name for name, found in spaces.items() if found <= others)
 
 
 def _unmanaged(
@@ -199,7 +215,8 @@ def _unmanaged(
     apart: dict[str, dict[str, None]] = {}
     for space, name in starter.sought_in_ros2 if ros2 else starter.sought:
         is_global = name.startswith(f"{manager}/")
-        if space.strip("/") != manager and (manager, name) not in known and not is_global:
+        is_other = space.strip("/") != manager and space.strip("/") not in starter.managers
+        if is_other and (manager, name) not in known and not is_global:
             apart.setdefault(space.strip("/"), {})[name] = None
     for space, names in apart.items():
         listed = ", ".join(f'"{name}"' for name in [*names][:_SHOWN])
