@@ -79,11 +79,12 @@ def _stands_still(description: RobotDescription) -> bool:
 def unmanaged_controllers(findings: Callable[[], Sequence[Diagnostic]]) -> Iterator[Fault]:
     """Controllers that a launch file starts for a robot in Gazebo, although no plugin runs them.
 
-    Plugins may drive other joints of the robot.
+    Plugins may drive other joints of the robot, or a program of the repository with a manager.
     """
     for each in findings():
         if each.code is devices.HARDWARE_WITHOUT_PLUGIN and each.values.get("spawned"):
-            yield Fault(test="controller", subject=str(each.values["name"]), reason=each)
+            name, sure = str(each.values["name"]), "program" not in each.values
+            yield Fault(test="controller", subject=name, reason=each, sure=sure)
 
 
 def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
@@ -108,9 +109,8 @@ def refused_controllers(verdict: Verdict) -> dict[str, Fault]:
     found: dict[str, Fault] = {}
     for each in verdict.diagnostics:
         name = str(each.values.get("controller", ""))
-        if each.code is devices.CONTROLLER_PARAMETER_TYPE and is_started(name, verdict):
+        if each.code is devices.CONTROLLER_PARAMETER_TYPE and name and is_started(name, verdict):
             found.setdefault(name, Fault(test="controller", subject=name, reason=each))
-    found.pop("", None)
     return found
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from cartwheel.description.model import Simulator
@@ -65,7 +65,10 @@ class LaunchUse:
     it. Those whose namespace is uncertain are left out."""
     sought_in_ros2: tuple[tuple[str, str], ...] = ()
     """The same for spawners of ROS 2."""
-    managers: frozenset[str] = frozenset()
+    programs: tuple[tuple[str, str], ...] = field(default=(), compare=False)
+    """The namespaces of its nodes, each with the package of the program; `UNKNOWN` for an uncertain
+    namespace."""
+    managers: frozenset[str] = field(default=frozenset(), compare=False)
     """The namespaces in which it starts controller managers of ROS 2 outside of Gazebo; `UNKNOWN`
     is among them if one is uncertain."""
     places: tuple[tuple[str, Path], ...] = ()

@@ -227,6 +227,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 unfound=tuple(facts.unfound),
                 sought=tuple(dict.fromkeys(facts.sought)),
                 sought_in_ros2=tuple(dict.fromkeys(facts.sought_in_ros2)),
+                programs=tuple(facts.programs),
                 managers=frozenset(facts.managers),
                 places=tuple(dict.fromkeys(facts.places)),
                 lacking=bool(facts.required),

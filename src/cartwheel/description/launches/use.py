@@ -91,6 +91,8 @@ class Facts:
     """See `LaunchUse.sought`."""
     sought_in_ros2: list[tuple[str, str]] = field(default_factory=list)
     """See `LaunchUse.sought_in_ros2`."""
+    programs: dict[tuple[str, str], None] = field(default_factory=dict)
+    """See `LaunchUse.programs`."""
     managers: set[str] = field(default_factory=set)
     """See `LaunchUse.managers`."""
     lost: list[Path] = field(default_factory=list)
@@ -314,6 +316,7 @@ class Facts:
             values: Its parameters, by name.
             origin: Where it is stated; None if only the file is known.
         """
+        self.programs[UNKNOWN if UNKNOWN in space else space.strip("/"), package] = None
         if package in _GAZEBO:
             if executable == "create":
                 # It also accepts its arguments as parameters.

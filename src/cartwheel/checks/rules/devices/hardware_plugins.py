@@ -31,6 +31,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     package_system,
     unknown_hardware,
 )
+from cartwheel.dialects.ros_control.launched.own_managers import own_managers
 from cartwheel.dialects.tag_roles import DRIVEN_ROLES
 from cartwheel.errors import Diagnostic, Origin, Value
 
@@ -76,6 +77,25 @@ def hardware_unknown(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
+    """As `_unmanaged`. It is a note if the launch file starts a program of the repository that has
+    a controller manager of its own: what it moves is unknown.
+    """
+    for found in _unmanaged(subject, robot):
+        programs = own_managers(subject.launch)
+        if not programs:
+            yield found
+            continue
+        package = next(iter(programs.values()))
+        yield replace(
+            found,
+            severity="info",
+            values={**found.values, "program": package},
+            hint=f'A program of the package "{package}" has a controller manager, too. If it moves '
+            "the robot in Gazebo, nothing is wrong.",
+        )
+
+
+def _unmanaged(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
     """Controllers that a launch file starts for a robot in Gazebo, although no plugin runs them.
 
     Hardware of ``<ros2_control>`` for Gazebo is left out, which is reported otherwise.

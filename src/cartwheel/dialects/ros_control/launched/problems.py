@@ -23,6 +23,7 @@ from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import is_ros2, name_and_file, read_parameters
 from cartwheel.dialects.ros_control.launched.names import ends_of, ros1_entries
+from cartwheel.dialects.ros_control.launched.own_managers import own_managers
 from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", ".world")
@@ -213,10 +214,14 @@ def _unmanaged(
         if each[0].strip("/") == manager
     }
     apart: dict[str, dict[str, None]] = {}
+    programs: dict[str, str] | None = None
     for space, name in starter.sought_in_ros2 if ros2 else starter.sought:
         is_global = name.startswith(f"{manager}/")
         is_other = space.strip("/") != manager and space.strip("/") not in starter.managers
         if is_other and (manager, name) not in known and not is_global:
+            programs = own_managers(starter) if programs is None else programs
+            if space.strip("/") in programs or UNKNOWN in programs:
+                continue
             apart.setdefault(space.strip("/"), {})[name] = None
     for space, names in apart.items():
         listed = ", ".join(f'"{name}"' for name in [*names][:_SHOWN])
