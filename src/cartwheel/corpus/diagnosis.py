@@ -218,14 +218,15 @@ def _unloaded(verdict: Verdict, description: RobotDescription) -> Diagnostic | N
 
 def _refused(description: RobotDescription) -> Diagnostic | None:
     """What the URDF parser of ROS and Gazebo refuses, an inertia for which gz-sim does not load a
-    robot that is for gz-sim only, or noise for which it does not, and with which Gazebo Classic
-    crashes.
+    robot that is for gz-sim only, noise for which it does not, and with which Gazebo Classic
+    crashes, or what it refuses in a robot that launch files start in gz-sim.
     """
     return next(
         (
             each
             for each in description.diagnostics
             if each.values.get("refused") is True
+            or each.values.get("refused_by", "") == description.simulator != ""
             or (each.code is devices.NOISE_TYPE_UNKNOWN and each.severity == "error")
         ),
         None,

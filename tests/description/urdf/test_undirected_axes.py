@@ -5,7 +5,9 @@ import pytest
 import cartwheel
 from cartwheel.api import World
 from cartwheel.codes.robot import AXIS_ZERO
+from cartwheel.corpus import try_robot
 from cartwheel.description import load_text
+from cartwheel.description.launches import launches_near
 from cartwheel.errors import DescriptionError
 
 ROBOT = """<robot name="r">
@@ -31,7 +33,17 @@ def text(plugins, reference=""):
     return ROBOT.format(mass=MASS, plugins=plugins, reference=reference)
 
 
-@pytest.mark.parametrize(("plugins", "reference"), [(CLASSIC, ""), (CAMERA, ' reference="arm"')])
+@pytest.mark.parametrize(
+    ("plugins", "reference"),
+    [
+        (CLASSIC, ""),
+        (CAMERA, ' reference="arm"'),
+        # They may be for Gazebo Classic.
+        ("", ""),
+        (CLASSIC + GZ, ""),
+        ('<plugin name="q" filename="libown.so"/>', ""),
+    ],
+)
 def test_the_axis_is_that_of_the_world_in_gazebo_classic(plugins, reference):
     """The joint is turned by 90° about z, so the x axis of the world is its -y axis."""
     robot = load_text(text(plugins, reference))
@@ -49,13 +61,29 @@ def test_the_joint_turns_about_the_x_axis_of_the_world():
         assert abs(axis[0]) == pytest.approx(1, abs=1e-3), model
 
 
-@pytest.mark.parametrize(
-    "plugins", ["", GZ, CLASSIC + GZ, '<plugin name="q" filename="libown.so"/>']
-)
-def test_gz_sim_does_not_load_such_a_robot(plugins):
+def test_gz_sim_does_not_load_such_a_robot():
     with pytest.raises(DescriptionError) as raised:
-        load_text(text(plugins))
+        load_text(text(GZ))
     assert raised.value.code is AXIS_ZERO
+
+
+LAUNCH = """<launch><node pkg="ros_gz_sim" exec="create" args="-file $(find-pkg-share r)/r.urdf"/>
+</launch>"""
+
+
+@pytest.mark.parametrize("package", ["ros_gz_sim", "gazebo_ros"])
+def test_a_launch_file_shows_for_which_gazebo_a_robot_is(tmp_path, package):
+    (tmp_path / "package.xml").write_text("<package><name>r</name></package>")
+    (tmp_path / "launch").mkdir()
+    program = "create" if package == "ros_gz_sim" else "spawn_entity.py"
+    start = LAUNCH.replace("ros_gz_sim", package).replace("create", program)
+    (tmp_path / "launch" / "start.launch.xml").write_text(start)
+    path = tmp_path / "r.urdf"
+    path.write_text(text(""))
+    verdict = try_robot(path, standing=0.1, launches=launches_near(tmp_path))
+    assert verdict.loaded
+    faults = [(each.test, each.code) for each in verdict.faults if each.test == "load"]
+    assert faults == ([("load", AXIS_ZERO)] if package == "ros_gz_sim" else [])
 
 
 def test_check_reports_the_axis_once_as_an_error(tmp_path):
@@ -74,14 +102,15 @@ IN_MODEL = "<use_parent_model_frame>1</use_parent_model_frame>"
 
 
 @pytest.mark.parametrize("frame", ["", IN_MODEL])
-def test_a_model_for_gazebo_classic_is_loaded(frame):
-    model = MODEL.format(version="1.6", frame=frame, plugins=CLASSIC)
+@pytest.mark.parametrize(("version", "plugins"), [("1.6", CLASSIC), ("1.6", ""), ("1.8", CLASSIC)])
+def test_a_model_that_may_be_for_gazebo_classic_is_loaded(frame, version, plugins):
+    model = MODEL.format(version=version, frame=frame, plugins=plugins)
     robot = load_text(model)
     assert robot.joint("turn").axis.xyz == pytest.approx((0, -1, 0), abs=1e-6)
     assert [each.severity for each in robot.diagnostics if each.code is AXIS_ZERO] == ["warning"]
 
 
-@pytest.mark.parametrize(("version", "plugins"), [("1.8", CLASSIC), ("1.6", GZ), ("1.6", "")])
+@pytest.mark.parametrize(("version", "plugins"), [("1.8", ""), ("1.6", GZ)])
 def test_a_model_for_gz_sim_is_not_loaded(version, plugins):
     with pytest.raises(DescriptionError) as raised:
         load_text(MODEL.format(version=version, frame="", plugins=plugins))

@@ -1,4 +1,4 @@
-"""Joints whose axis has length 0, which only Gazebo Classic loads."""
+"""Joints whose axis has length 0, which gz-sim does not load."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ def accept_zero_axis(node: Node, joint: str, said: str, ctx: Context) -> None:
     """Warns about an axis of length 0, for which the x axis of the world is used.
 
     urdfdom and sdformat 9 pass such an axis on, and ODE's ``dJointSetHingeAxis`` normalises it in
-    the frame of the world to 1 0 0. sdformat 10 and later, which gz-sim uses, refuse it.
+    the frame of the world to 1 0 0. sdformat 10 and later refuse it: all versions of gz-sim since
+    Dome.
+
+    The value ``refused_by`` of the warning is ``gz``.
 
     Args:
         node: The ``<axis>``.
@@ -20,9 +23,9 @@ def accept_zero_axis(node: Node, joint: str, said: str, ctx: Context) -> None:
         ctx: Receives the warning.
 
     Raises:
-        DescriptionError: The description is not for Gazebo Classic.
+        DescriptionError: The description is for gz-sim.
     """
-    if ctx.simulator != "classic":
+    if ctx.simulator == "gz":
         raise node.fail(said, code=robot.AXIS_ZERO, values={"joint": joint})
     ctx.warn(
         robot.AXIS_ZERO,
@@ -30,5 +33,5 @@ def accept_zero_axis(node: Node, joint: str, said: str, ctx: Context) -> None:
         "a robot",
         origin=node.origin,
         severity="warning",
-        values={"joint": joint},
+        values={"joint": joint, "refused_by": "gz"},
     )

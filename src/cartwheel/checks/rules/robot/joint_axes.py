@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from cartwheel.checks import edits, nodes
 from cartwheel.checks.kinematic_tree import joints_with_types
@@ -26,6 +27,21 @@ def axis_zero(subject: Subject) -> Iterator[Diagnostic]:
                     axis, "xyz", "0 1 0" if nodes.name_of(joint) in wheels else "0 0 1"
                 ),
             )
+
+    yield from _zero_in_sdf(subject)
+
+
+def _zero_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
+    """The reader's warnings about the axes of SDF, with what to write."""
+    for diagnostic in subject.read.diagnostics if subject.read is not None else ():
+        if diagnostic.code is not robot_codes.AXIS_ZERO or not subject.in_sdf(diagnostic.origin):
+            continue
+        node = subject.node_at(diagnostic.origin)
+        xyz = nodes.child(node, "xyz") if node is not None else None
+        if xyz is None:
+            yield diagnostic
+        else:
+            yield replace(diagnostic, **edits.text(xyz, "0 0 1"))
 
 
 @rule(robot_codes.AXIS_NOT_NORMALIZED)
