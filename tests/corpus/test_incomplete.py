@@ -3,7 +3,7 @@
 import pytest
 from tests.corpus.carts import cart, plugin, written
 
-from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT
+from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, XACRO_NAME_UNKNOWN
 from cartwheel.codes.robot import (
     BASE_WITHOUT_COLLISION,
     INERTIA_MISSING,
@@ -278,3 +278,29 @@ def test_a_description_is_not_at_fault_for_what_is_elsewhere(tmp_path, part, out
     verdict = try_robot(expanded(tmp_path, part, f'<link name="base">{MASS}</link>'), standing=1.0)
     assert [each.test for each in verdict.faults] == ["load"]
     assert verdict.outcome == outcome
+
+
+OWN_INCLUDE = '<xacro:include filename="$(find robot)/urdf/arm.xacro"/>'
+STATED = '<xacro:property name="{}" value="2"/>'
+
+
+@pytest.mark.parametrize(
+    ("include", "properties", "source"),
+    [
+        (INCLUDE, "", "unknown"),
+        # A similar name need not be meant.
+        (INCLUDE, STATED.format("M_PJ"), "unknown"),
+        (INCLUDE + OWN_INCLUDE, "", "unknown"),
+        (OWN_INCLUDE, "", "file"),
+        ("", "", "file"),
+    ],
+)
+def test_a_package_that_was_not_found_may_define_an_unknown_name(
+    tmp_path, include, properties, source
+):
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>")
+    own = cart().replace('value="2"', 'value="${J_PJ}"', 1)
+    verdict = try_robot(expanded(tmp_path, include, properties, own, plugin()), standing=1.0)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("load", XACRO_NAME_UNKNOWN, source)
+    assert verdict.outcome == source

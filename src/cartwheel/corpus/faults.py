@@ -96,7 +96,11 @@ class Fault:
 def _is_outside(reason: Diagnostic) -> bool:
     """Whether a description cannot be read because of what is not among the robot's files: a
     package, or the value of an argument. A package with a similar name may be meant.
+
+    A package that was not found may also define the unknown name of a property, macro or block.
     """
+    if reason.code is files.XACRO_NAME_UNKNOWN and reason.values.get("unfound"):
+        return True
     kind = {files.FILE_MISSING: "package", files.XACRO_NAME_UNKNOWN: "argument"}
     stated = reason.values.get("kind")
     return kind.get(reason.code, "") == stated and not reason.values.get("meant")

@@ -144,7 +144,13 @@ class Absences:
         )
 
     def explain(self, error: DescriptionError) -> DescriptionError:
-        """Adds the absent files to the hint of an error that they may have caused."""
+        """Adds the absent files to the hint of an error that they may have caused.
+
+        The value ``unfound`` contains the packages that may define the name, but were not found.
+        """
+        unfound = {each.package: None for each in self._incomplete() if each.package}
+        if error.code is codes.XACRO_NAME_UNKNOWN and unfound:
+            error.values = {**error.values, "unfound": tuple(unfound)}
         if error.code is codes.XACRO_NAME_UNKNOWN and self.files:
             names = ", ".join(f'"{each.name}"' for each in self.files)
             cause = f"It may be defined in an included file that was not found: {names}."
