@@ -691,7 +691,7 @@ ENDS = "<parent>a</parent><child>b</child>"
         (BAD_JOINT.format("fixed", ENDS) + f'<joint name="j" type="fixed">{ENDS}</joint>',
          "name-taken"),
         ('<link name="a"><inertial><mass>0</mass></inertial></link>', "mass-not-positive"),
-        ('<link name="a"><inertial><mass>1e-109</mass></inertial></link>', "mass-not-positive"),
+        ('<link name="a"><inertial><mass>-1e-15</mass></inertial></link>', "mass-not-positive"),
         ('<link name="a"><inertial><mass>x</mass></inertial></link>', "value-invalid"),
         ('<link name="a"><pose>0 0 x</pose></link>', "value-invalid"),
         ('<link name="a"><visual name="v"><geometry><bx/></geometry></visual></link>',

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.codes.robot import INERTIA_IMPOSSIBLE, MASS_NOT_POSITIVE
+from cartwheel.codes.tags import VALUE_IGNORED
 from cartwheel.description.inertia import (
     HEAVIEST,
     LIGHTEST,
@@ -70,14 +71,25 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
             values={"link": link.name, "stated": 0.0},
         )
         return None
-    if not 0 < i.mass <= HEAVIEST or (i.mass < LIGHTEST and not rigid):
+    if not 0 < i.mass <= HEAVIEST:
         raise DescriptionError(
-            f'the mass of link "{link.name}" must be between {LIGHTEST:g} and {HEAVIEST:g} '
-            f"kg (got {i.mass:g})",
+            f'the mass of link "{link.name}" must be above 0 and at most {HEAVIEST:g} kg (got '
+            f"{i.mass:g})",
             code=MASS_NOT_POSITIVE,
             origin=i.origin,
             values={"link": link.name, "stated": i.mass},
         )
+    if i.mass < LIGHTEST and not rigid:
+        # Such masses are often written for links that are only frames.
+        ctx.warn(
+            VALUE_IGNORED,
+            f'link "{link.name}" has a mass of {i.mass:g} kg, so {LIGHTEST:g} kg is used, the '
+            "smallest mass that can be simulated",
+            origin=i.origin,
+            severity="info",
+            values={"link": link.name, "stated": i.mass, "used": LIGHTEST},
+        )
+        i = replace(i, mass=LIGHTEST)
     diagonal, products = i.diagonal, i.products
     if rigid and not any((*diagonal, *products)):
         return i  # a point mass: the link that it is fixed to has the inertia
