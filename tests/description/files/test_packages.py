@@ -424,42 +424,29 @@ def test_a_package_of_a_neighbouring_repository_is_reported_once(tmp_path):
 
 @pytest.mark.parametrize("mark", [".git", ""])
 def test_the_own_repository_comes_before_a_neighbour(tmp_path, mark):
-    """Also if the folder of a package is empty, as that of a submodule that was not fetched."""
+    """Unless it only has a folder with the name, such as that of a submodule that was not fetched:
+    ROS finds packages by their manifests.
+    """
     own = tmp_path / "src" / "own"
     file = robot(package(own / "pieces" / "robot"))
     package(own / "pieces" / "tools")
     if mark:
         (own / mark).mkdir()
-    package(tmp_path / "src" / "other" / "arm")
-    empty = own / "pieces" / "arm"
-    empty.mkdir()
+    there = package(tmp_path / "src" / "other" / "arm")
+    bare = own / "pieces" / "arm"
+    for part in (bare, bare / "meshes"):
+        part.mkdir()
+        found = packages(file)
+        assert found.find("arm") == there
+        assert [each.code for each in found.moves()] == [files.PACKAGE_OF_NEIGHBOUR]
+    (bare / "package.xml").write_text("<package><name>arm</name></package>")
     found = packages(file)
-    assert found.find("arm") == empty
+    assert found.find("arm") == bare
     assert not [*found.moves()]
     if mark:
         deep = package(own / "a" / "b" / "c" / "d" / "hand")
         package(tmp_path / "src" / "other" / "hand")
         assert packages(file).find("hand") == deep
-
-
-def test_folders_of_the_own_repository_are_listed_once(tmp_path, monkeypatch):
-    home = tmp_path / "home"
-    (home / ".github").mkdir(parents=True)
-    (home / "deep" / "b").mkdir(parents=True)
-    for name in "abcd":
-        package(tmp_path / "other" / name)
-    listed = []
-
-    def listing(root):
-        listed.append(root)
-        return package_folders.folders_below(root)
-
-    monkeypatch.setattr(package_search, "folders_below", listing)
-    found = packages(robot(home), package_path=[])
-    assert [found.found(name) for name in "abcd"] == [
-        home / "deep" / "b" if name == "b" else tmp_path / "other" / name for name in "abcd"
-    ]
-    assert listed == [home]
 
 
 def test_a_folder_around_a_package_that_may_not_be_read(tmp_path, monkeypatch):

@@ -138,23 +138,6 @@ def packages_below(root: Path) -> Iterator[tuple[str, Path]]:
         level = below
 
 
-def folders_below(root: Path) -> Iterator[Path]:
-    """The folders below `root` that are in no package, the nearest first."""
-    level = [root]
-    looked = 0
-    while level and looked < MAX_CRAWLED:
-        below = [
-            each
-            for folder in level
-            if package_name(folder) is None
-            for each in folders_in(folder)
-            if package_name(each) is None
-        ]
-        looked += len(below)
-        yield from below
-        level = below
-
-
 def _nested(root: Path) -> Iterator[Path]:
     """The folders in which a package of the workspace at `root` may be, nearest first."""
     first = list(folders_in(root))

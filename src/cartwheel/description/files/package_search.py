@@ -14,7 +14,6 @@ from cartwheel.description.files.missing_packages import Advice, how_to_install
 from cartwheel.description.files.package_folders import (
     PackagesByName,
     around,
-    folders_below,
     folders_in,
     is_dir,
     package_name,
@@ -196,15 +195,14 @@ class PackageSearch:
     def _own(self, name: str, found: Path) -> Path:
         """The package with this name in the repository of the file, if `found` is in another one.
 
-        The folder of a package may be empty, such as that of a submodule that was not fetched. Then
-        a package of another author with this name is not meant.
+        A folder with this name but without a manifest, such as that of a submodule that was not
+        fetched, is none: ROS finds the package.
         """
         home = self._home
         given = (*self.package_path, *self.environment_roots())
         if home is None or found.is_relative_to(home) or any(map(found.is_relative_to, given)):
             return found
         own = self._in(home, crawled=True).first(name)
-        own = own or self._folders_of_home.get(name)
         if own is None:
             self.neighbours[name] = found
         return own or found
@@ -215,14 +213,6 @@ class PackageSearch:
         if self.file is None:
             return None
         return repository_of(self.file) or root_of(self.file)
-
-    @cached_property
-    def _folders_of_home(self) -> dict[str, Path]:
-        """The nearest folders below that of `_home` that are in no package, by name."""
-        found: dict[str, Path] = {}
-        for folder in () if self._home is None else folders_below(self._home):
-            found.setdefault(folder.name, folder)
-        return found
 
     def _own_folder(self, name: str) -> Path | None:
         """The folder with this name that contains the file but no manifest, if the file is in no
