@@ -175,7 +175,7 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
         ({"model_xml": ""}, "model_xml is empty"),
         ({"model_xml": "hello"}, "<model_xml of mine>:1"),
         ({"model_xml": URDF.replace("</link>", "</lnk>")}, "<model_xml of mine>:"),
-        ({"model_xml": URDF.replace("<mass value", "<mass vlue")}, "<model_xml of mine>:4"),
+        ({"model_xml": URDF.replace('<mass value="', '<mass value="x')}, "<model_xml of mine>:4"),
         ({"model_xml": "<launch/>"}, "a launch file"),
         (
             {"model_xml": '<sdf version="1.6"><world name="w"/></sdf>'},

@@ -131,3 +131,12 @@ def test_the_missing_moments_are_written(tmp_path):
     (fix,) = fixes(found, tmp_path)
     fix.write()
     assert not [each for each in check(path).findings if each.code is LINK_CUT_SHORT]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "meant"),
+    [('<mass vlue="1"/>', "vlue"), ('<mas value="1"/>', "mas"), ("<mass/>", "")],
+)
+def test_a_likely_misspelling(wrong, meant):
+    (found,) = cut(urdf(f"<inertial>{wrong}{SIX}</inertial>{FELT}"))
+    assert found.values["meant"] == meant

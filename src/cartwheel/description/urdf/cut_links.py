@@ -136,17 +136,20 @@ def _stop_of(link: Node) -> _Stop | None:
 def _stop_in_inertial(inertial: Node) -> _Stop | None:
     masses, tensors = _all(inertial, "mass")[:1], _all(inertial, "inertia")[:1]
     if not masses or "value" not in masses[0].attributes:
-        near = numbers.likely("mass", [each.tag for each in inertial.children if not masses])
+        name = "value" if masses else "mass"
+        near = numbers.likely(
+            name, masses[0].attributes if masses else [each.tag for each in inertial.children]
+        )
         return _Stop(
             part=inertial,
             at=masses[0] if masses else inertial,
             message="a <mass> has no value" if masses else "an <inertial> has no <mass>",
-            hint=f"Is <{near}> a misspelling of <mass>?"
+            hint=f'Is "{near}" a misspelling of "{name}"?'
             if near
             else 'Write the mass in kg as an attribute, such as <mass value="1"/>.',
             values={
                 "tag": "mass" if masses else "inertial",
-                "missing": "value" if masses else "mass",
+                "missing": name,
                 "meant": near or "",
             },
             loses_inertia=True,
