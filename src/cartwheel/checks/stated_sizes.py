@@ -18,6 +18,7 @@ from cartwheel.checks.units import FARTHEST
 from cartwheel.checks.wheels import axle_of, passive_axle, wheel_axis, wheel_place, wheel_tread
 from cartwheel.description.model import PluginTag
 from cartwheel.description.solids import Floats
+from cartwheel.dialects.ros_control.controllers.wheels import wheel_radius as radius_in
 from cartwheel.dialects.ros_control.parameters import SIZES
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS, SIM_TYPE
 from cartwheel.dialects.tag_roles import TagRole
@@ -307,7 +308,7 @@ def _of_controller(
         if row.role == "wheel_base" and len(sides) == 1:
             sides.append(passive_axle(robot, sides[0]))
         measured = _measured(sides, _MEASURES[row.role])
-        written = value or times
+        written = value or times or next(filter(None, sided), None)
         if written is None or (value is not None and number is None) or measured is None:
             continue
         name = next((each for each in spellings if controller.has(each)), spellings[0])
@@ -342,6 +343,12 @@ def _of_controller(
             # The controller measures the distance between the wheels itself.
             apart = mean_between(one, beside=True)
             yield replace(one, value=apart, write=partial(_unscaled, times), measured=True)
+        elif one.measure == "radius":
+            # It uses the radius of the first wheel.
+            radius = radius_in(robot.description, one.first[0])
+            if radius is not None:
+                write = partial(_unscaled, written)
+                yield replace(one, value=radius, write=write, measured=True)
 
 
 def _unscaled(times: Value, _: str) -> str:

@@ -83,6 +83,8 @@ def size_mismatch(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
         why: The real size and the consequence, as they follow "but" in the message.
     """
     stated = f"{one.label} is {one.value:g} m"
+    if one.measured:
+        stated = f"{one.label} is missing, so that of the description is used, {one.value:.4g} m"
     if one.factor != 1.0:
         stated += f", times its multiplier {one.factor:g}"
     if not one.written:
