@@ -2,7 +2,9 @@
 
 import pytest
 from tests.corpus.carts import cart, controlled, plugin, written
+from tests.corpus.test_other_ros import CONTROL, CONTROLLER
 
+from cartwheel.checks.checking import check
 from cartwheel.codes.robot import WHEEL_AXIS_MISALIGNED, WHEEL_SEPARATION_MISMATCH
 from cartwheel.codes.running import JOINT_DRIVEN_TWICE
 from cartwheel.corpus import try_robot
@@ -139,3 +141,35 @@ def test_transmissions_that_hold_the_wheels_are_tested_without_their_manager(tmp
     ]
     assert whole == (2, 3)
     assert counts == [(1, 3), (1, 3), (2, 1)]
+
+
+PLANAR = (
+    '<gazebo><plugin name="p" filename="libgazebo_ros_planar_move.so"><commandTopic>{topic}'
+    "</commandTopic><odometryTopic>move/odom</odometryTopic></plugin></gazebo>"
+)
+
+
+@pytest.mark.parametrize(("topic", "moves"), [("cmd_vel", True), ("/cmd_vel", True), ("x", False)])
+def test_planar_move_sets_the_velocity_of_a_robot_with_wheels(tmp_path, topic, moves):
+    file = written(tmp_path, cart(), plugin(), PLANAR.format(topic=topic))
+    reported = [each.values for each in check(file).findings if each.code is JOINT_DRIVEN_TWICE]
+    assert [each["plugin"] for each in reported] == ["libgazebo_ros_planar_move.so"] * (not moves)
+    verdict = try_robot(file, standing=0.5)
+    assert all(drive.passes for drive in verdict.drives) == moves
+    assert [(each.subject, each.code) for each in verdict.faults] == [
+        ("/cmd_vel", JOINT_DRIVEN_TWICE)
+    ] * (0 if moves else 2)
+    assert verdict.outcome == ("good" if moves else "file")
+
+
+def test_planar_move_hinders_a_controller_of_the_wheels(tmp_path):
+    (tmp_path / "package.xml").write_text("<package><name>cart</name></package>")
+    (tmp_path / "config").mkdir()
+    text = CONTROLLER.replace("wheel_separation: 0.3", "wheel_separation: 0.2")
+    (tmp_path / "config/base.yaml").write_text(text)
+    file = written(tmp_path, cart(), CONTROL, PLANAR.format(topic="cmd_vel"))
+    verdict = try_robot(file, standing=0.5)
+    assert {(each.subject, each.code) for each in verdict.faults} == {
+        ("/base/cmd_vel", JOINT_DRIVEN_TWICE)
+    }
+    assert verdict.outcome == "file"

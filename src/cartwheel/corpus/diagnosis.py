@@ -454,12 +454,18 @@ def _explaining(
     """
     test, subject = failed
     hindered = failed in verdict.hindered
+    # A plugin that sets the velocity of the whole robot also moves it sideways.
+    rolls = not any(each.commanded_sideways for each in verdict.drives if each.topic == subject)
     if test in BASES:
         found = without_other_sizes(found, subject, description, verdict.controllers)
     return [
         each
         for each in found
-        if (hindered or each.code is not running.JOINT_DRIVEN_TWICE)
+        if (
+            hindered
+            or each.code is not running.JOINT_DRIVEN_TWICE
+            or (test in BASES and rolls and "overridden" in each.values)
+        )
         and not (test in BASES and _topples(each))
         and (
             test not in BASES

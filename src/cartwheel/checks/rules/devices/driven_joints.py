@@ -7,7 +7,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cartwheel.checks import plugin_tags
-from cartwheel.checks.controller_claims import claims, has_standard_hardware, managers, offers
+from cartwheel.checks.controller_claims import (
+    claims,
+    has_standard_hardware,
+    managers,
+    offers,
+    table,
+)
 from cartwheel.checks.naming import joints_named
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
@@ -15,6 +21,8 @@ from cartwheel.checks.subject import Subject
 from cartwheel.codes import running
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.classic.drives.planar_move import PlanarMove
+from cartwheel.dialects.ros_control.parameters import SIZES
 from cartwheel.dialects.ros_control.selection import launched
 from cartwheel.dialects.tag_roles import DRIVEN_ROLES
 from cartwheel.errors import Diagnostic, Origin
@@ -60,6 +68,43 @@ def joint_driven_twice(subject: Subject) -> Iterator[Diagnostic]:
                 origin=other.origin,
                 hint="Remove one of them, or let it drive other joints.",
             )
+        yield from _overridden(subject, robot)
+
+
+def _overridden(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
+    """Drives with wheels of a robot whose velocity another plugin sets, on another topic.
+
+    It sets that of the whole model, also to 0 as long as it receives no command. Source:
+    gazebo_ros_planar_move of gazebo_plugins, for ROS 1 and ROS 2.
+    """
+    tags = robot.description.plugins
+    movers = [each for each in tags if plugin_named(each.filename) is PlanarMove]
+    topics = {plugin_tags.command_topic(each) for each in movers}
+    if not movers or "" in topics:
+        return
+    drivers = [
+        (f'plugin "{each.tag.filename}"', each.tag.origin)
+        for each in robot.drives
+        if plugin_tags.command_topic(each.tag) not in (*topics, "")
+    ]
+    remapped = {name for _, each in subject.launched for name, _ in each.arguments}
+    drivers += [
+        (f'controller "{each.name}"', each.type.origin)
+        for owner, file in subject.control
+        for each in file.controllers
+        if owner is robot
+        and each.name not in remapped
+        and table(each, *SIZES)
+        and any(claim.joint in robot.joints for claim in claims(each))
+    ]
+    for driver, origin in drivers:
+        yield running.JOINT_DRIVEN_TWICE.diagnostic(
+            f'plugin "{movers[0].filename}" sets the velocity of the whole robot, also without a '
+            f"command, so {driver} turns the wheels, but hardly moves the robot",
+            values={"plugin": movers[0].filename, "overridden": driver},
+            origin=origin,
+            hint="Remove one of them.",
+        )
 
 
 def _plugins(robot: Robot) -> Iterator[tuple[str, _Driver]]:
