@@ -139,6 +139,12 @@ ENVIRONMENT_ASSUMED = Code(
     "info",
     "a file uses an environment variable that ROS sets, and no ROS is sourced",
 )
+LAUNCH_STOPS = Code(
+    "CW170",
+    "launch-stops",
+    "error",
+    "the launch file that starts the robot needs a file that does not exist",
+)
 PACKAGE_URI_IN_SDF = Code(
     "CW168",
     "package-uri-in-sdf",

@@ -52,6 +52,7 @@ _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES}
 _UNLIMITED = frozenset({robot.LIMIT_MISSING})
 """For a URDF, neither ROS nor Gazebo loads the robot."""
 _NOT_EXPANDED = frozenset({files.DESCRIPTION_NOT_EXPANDED})
+_STOPPED = frozenset({files.LAUNCH_STOPS})
 _WITHOUT_WHEELS = frozenset(
     {
         robot.BODY_ON_GROUND,
@@ -176,6 +177,7 @@ def _load_faults(
         _refused(description),
         _cut_short(description),
         coded(verdict.observed, _NOT_EXPANDED),
+        coded(verdict.observed, _STOPPED),
     )
     for reason in reasons:
         if reason is not None:

@@ -25,7 +25,8 @@ Test = Literal[
 ]
 """What failed.
 
-- ``load``: the description cannot be loaded; ``simulate``: the simulation stopped with an error.
+- ``load``: the description cannot be loaded, or its launch file does not start; ``simulate``: the
+  simulation stopped with an error.
 - ``stand``: the robot does not stand; ``publish``: a topic published nothing.
 - ``drive``, ``turn``, ``sideways``: a base does not follow its forward, turning or sideways
   commands.

@@ -40,10 +40,10 @@ from cartwheel.description.launches import (
     LaunchSearch,
     LaunchUse,
     chosen,
+    launch_mistakes,
     launches_near,
     moves,
     own_launches,
-    unexpanded,
     unread,
 )
 from cartwheel.description.model import Joint, RobotDescription
@@ -119,7 +119,7 @@ def try_robot(
         return replace(
             verdict, error=str(error), failure=reason, faults=(Fault(test="load", reason=reason),)
         )
-    verdict = replace(_described(verdict, robot), observed=(*unexpanded(file, launches),))
+    verdict = replace(_described(verdict, robot), observed=launch_mistakes(file, use, launches))
     whole, robot = robot, with_own_plugins(robot)  # as in Gazebo
     spawned: tuple[str, ...] = ()
     selected: Selection | None = None

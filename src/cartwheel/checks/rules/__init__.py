@@ -28,7 +28,12 @@ from cartwheel.checks.rules.devices import (
     undriven_joints,
     update_rates,
 )
-from cartwheel.checks.rules.files import missing_files, package_uris, unused_definitions
+from cartwheel.checks.rules.files import (
+    launch_files,
+    missing_files,
+    package_uris,
+    unused_definitions,
+)
 from cartwheel.checks.rules.robot import (
     balance,
     buoyancy,
@@ -131,6 +136,7 @@ RULES: tuple[Rule, ...] = tuple(
         claimed_joints,
         driven_joints,
         missing_files,
+        launch_files,
         package_uris,
         shape_scale,
         wrong_units,

@@ -3,6 +3,8 @@
 from cartwheel.description.files.repositories import root_of
 from cartwheel.description.launches.gazebos import in_simulator
 from cartwheel.description.launches.launch_use import LaunchUse, unread
+from cartwheel.description.launches.mistakes.reports import launch_mistakes, stopping
+from cartwheel.description.launches.mistakes.unexpanded import needs_expansion, unexpanded
 from cartwheel.description.launches.own import (
     LaunchSearch,
     OwnLaunches,
@@ -22,7 +24,6 @@ from cartwheel.description.launches.start import (
     is_launch_file,
     read_launch,
 )
-from cartwheel.description.launches.unexpanded import needs_expansion, unexpanded
 
 __all__ = [
     "LaunchSearch",
@@ -34,6 +35,7 @@ __all__ = [
     "controllers_for",
     "in_simulator",
     "is_launch_file",
+    "launch_mistakes",
     "launches_near",
     "moves",
     "needs_expansion",
@@ -42,6 +44,7 @@ __all__ = [
     "root_of",
     "shared_parts",
     "starters",
+    "stopping",
     "unexpanded",
     "unread",
 ]

@@ -5,9 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from cartwheel.description.model import Simulator
 from cartwheel.errors import Diagnostic, Origin
+
+Missing = Literal["world", "gz world", "launch file", "parameters", "file"]
+"""What a missing file is: a world of Gazebo Classic or of gz-sim, an included launch file,
+parameters that ROS 1 loads, or another file that is read while the launch file is."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,6 +25,18 @@ class Unfound:
     file: Path
     origin: Origin
     """The ``<rosparam>``."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MissingFile:
+    """A file that a launch file needs to start, and that does not exist."""
+
+    what: Missing
+    name: str
+    """The file as it is stated, after all substitutions."""
+    origin: Origin
+    at_home: bool = False
+    """Whether it is in a home folder, so that it may exist on one computer."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,6 +77,9 @@ class LaunchUse:
     """YAML files that it loads and that do not exist."""
     unfound: tuple[Unfound, ...] = ()
     """Those of them that certainly do not exist: their packages were found."""
+    stopped: tuple[MissingFile, ...] = ()
+    """The files that certainly do not exist, and without which ROS does not start the launch file,
+    or Gazebo does not start."""
     sought: tuple[tuple[str, str], ...] = ()
     """The controllers that spawners of ROS 1 start: the namespace of the manager, and the name in
     it. Those whose namespace is uncertain are left out."""

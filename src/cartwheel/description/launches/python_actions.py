@@ -70,3 +70,18 @@ def called_functions(tree: ast.Module) -> dict[str, ast.FunctionDef]:
                     if word.arg == "function" and isinstance(word.value, ast.Name)
                 }
     return {name: function for name, function in defined.items() if name in names}
+
+
+def certain_functions(tree: ast.Module) -> frozenset[str]:
+    """The names of functions of a launch file that launch certainly calls: that which returns the
+    launch description, and those that actions without a condition name.
+    """
+    named: set[str] = {"generate_launch_description"}
+    doubtful: set[str] = set()
+    for each in ast.walk(tree):
+        if isinstance(each, ast.Call) and name_of(each.func) == "OpaqueFunction":
+            words = {word.arg: word.value for word in each.keywords}
+            function = words.get("function", each.args[0] if each.args else None)
+            if isinstance(function, ast.Name):
+                (doubtful if "condition" in words else named).add(function.id)
+    return frozenset(named - doubtful)

@@ -57,9 +57,10 @@ class Classes:
     def configuration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a launch argument."""
         name = text(words.get("variable_name", first))
-        if name in self._given:
-            return self._given[name]
-        return self.defaults.get(name, words.get("default", NOTHING))
+        value = self.defaults.get(name, words.get("default", NOTHING))
+        value = self._given.get(name, value)
+        # Some launch files state an empty default for what the user must state.
+        return NOTHING if value == "" and self.facts.strict else value
 
     def declaration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Stores the default of a launch argument."""
@@ -67,7 +68,8 @@ class Classes:
         if not self._depth:
             self.facts.declared.add(name)
         if name not in self.defaults and ("default_value" in words or UNKNOWN in words):
-            self.defaults[name] = joined(words.get("default_value", NOTHING))
+            known = not (self.facts.strict and self.facts.doubts)
+            self.defaults[name] = joined(words.get("default_value", NOTHING)) if known else UNKNOWN
         if name not in self._given and name not in self.defaults and UNKNOWN not in name:
             origin = Origin(file=shown_path(self.path), line=self.line)
             self.facts.required[self.path, name] = origin
@@ -82,7 +84,8 @@ class Classes:
         """Stores the value of a launch argument."""
         if len(places) > 1 or "value" in words:
             value = places[1] if len(places) > 1 else words["value"]
-            self.defaults[text(words.get("name", first))] = joined(value)
+            known = not (self.facts.strict and self.facts.doubts)
+            self.defaults[text(words.get("name", first))] = joined(value) if known else UNKNOWN
         return NOTHING
 
     def executable(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
@@ -92,7 +95,10 @@ class Classes:
     def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds the description in a command."""
         origin = Origin(file=str(self.path), line=self.line)
-        return Description(self.facts.describe(joined(words.get("command", first)), origin))
+        command = joined(words.get("command", first))
+        if self.facts.strict:
+            self.facts.need_text(split(command), origin)
+        return Description(self.facts.describe(command, origin))
 
     def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a Python expression, which consists of substitutions."""
@@ -117,7 +123,8 @@ class Classes:
         defaults = {name: joined(value) for name, value in self.defaults.items()}
         inherited = {**defaults, **self._given}
         required = dict(self.facts.required)
-        self.facts.include(joined(source), arguments, self._depth, inherited)
+        origin = Origin(file=str(self.path), line=self.line)
+        self.facts.include(joined(source), arguments, self._depth, inherited, origin=origin)
         if not known or UNKNOWN in arguments:
             # The unknown arguments may be those without a default.
             self.facts.required = required
@@ -197,7 +204,8 @@ class Classes:
         parts = words.get("cmd", first)
         if isinstance(parts, list):
             said = [joined(each) for each in parts]
-            self.facts.command(split(said[0]) if len(said) == 1 else said)
+            origin = Origin(file=str(self.path), line=self.line)
+            self.facts.command(split(said[0]) if len(said) == 1 else said, origin)
         return NOTHING
 
 

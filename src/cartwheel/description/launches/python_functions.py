@@ -17,6 +17,8 @@ SHARES = frozenset(
     }
 )
 """Functions that return the folder of a package."""
+PREFIXES = frozenset({"get_package_prefix", "FindPackagePrefix"})
+"""Those of them that return the folder in which it is installed."""
 SAME = frozenset(
     {
         "str",

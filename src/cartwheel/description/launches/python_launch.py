@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any, Literal
 
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.package_folders import is_file
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.effort import LONGEST, UNKNOWN
@@ -19,6 +20,7 @@ from cartwheel.description.launches.environment import is_environ, is_variable, 
 from cartwheel.description.launches.python_actions import (
     Later,
     called_functions,
+    certain_functions,
     name_of,
     start_all,
     used,
@@ -35,6 +37,7 @@ from cartwheel.description.launches.python_functions import (
     JOINS,
     OUTPUTS,
     PASSED,
+    PREFIXES,
     SAME,
     SHARES,
     is_module,
@@ -61,6 +64,8 @@ from cartwheel.errors import Origin
 
 _STARTED = frozenset({"IncludeLaunchDescription", "Node", "RosGzBridge"})
 """Actions that start nodes or read files."""
+_ON_OTHER_EVENTS = frozenset({"OnProcessIO", "OnShutdown", "OnStateTransition"})
+"""Event handlers whose actions may never be executed."""
 _End = Literal["", "continue", "break", "return"]
 _ENDS: Sequence[_End] = ("", "continue", "break", "return")
 """How a block ends; empty if the statements after it may be executed."""
@@ -85,6 +90,7 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
         home=facts.home,
         effort=facts.effort,
         reversed=facts.reversed,
+        strict=facts.strict,
     )
     first = Classes(path, {}, arguments, unused, depth)
     _Reader(first).file(tree)
@@ -93,6 +99,12 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
 
 def _ignore(_path: Path, _arguments: Mapping[str, str], _facts: Facts, _depth: int) -> None:
     """Included files are irrelevant for the declared defaults."""
+
+
+def _reads(places: Sequence[Any], words: Mapping[str, Any]) -> bool:
+    """Whether a call of ``open`` with these arguments opens a file to read it."""
+    mode = places[1] if len(places) > 1 else words.get("mode", "r")
+    return isinstance(mode, str) and not set(mode) & set("wax+")
 
 
 class _Reader:
@@ -112,11 +124,14 @@ class _Reader:
         """The actions that are assigned to variables."""
         self._unused: frozenset[ast.stmt] = frozenset()
         """The statements whose actions nothing uses."""
+        self._certain: frozenset[str] = frozenset()
+        """The names of the functions that are certainly called."""
 
     def file(self, tree: ast.Module) -> None:
         """Evaluates a launch file. Actions whose use is unknown are started last."""
         self._functions = called_functions(tree)
         self._unused = unused_actions(tree, self._facts.effort)
+        self._certain = certain_functions(tree) if self._facts.strict else frozenset()
         space = self._facts.namespace
         try:
             self.block(tree.body)
@@ -124,7 +139,7 @@ class _Reader:
             self._facts.namespace = space
         for each in self._started:
             if not each.skipped:
-                with self._facts.within(each.space):
+                with self._facts.within(each.space), self._facts.doubting():
                     each.start()
 
     def block(self, statements: Iterable[ast.stmt]) -> _End:
@@ -171,12 +186,16 @@ class _Reader:
                 if end := self.block(each.body):
                     return end
             elif isinstance(each, ast.Try):
-                end = self.block(each.body) or self.block(each.orelse)
+                # What it raises may be caught.
+                with self._facts.doubting():
+                    end = self.block(each.body) or self.block(each.orelse)
                 if end := self.block(each.finalbody) or end:
                     return end
             else:
-                for name in ("body", "orelse"):
-                    self.block(getattr(each, name, ()) or ())
+                certain = isinstance(each, ast.FunctionDef) and each.name in self._certain
+                with self._facts.doubting(not certain):
+                    for name in ("body", "orelse"):
+                        self.block(getattr(each, name, ()) or ())
         return ""
 
     def _branches(self, node: ast.If) -> _End:
@@ -187,11 +206,15 @@ class _Reader:
             return self.block(node.body if holds else node.orelse)
         before = self._names
         first, last = before.within({}), before.within({})
-        self._names = first
-        body = self.block(node.body)
-        self._names = last
-        other = self.block(node.orelse)
+        with self._facts.doubting():
+            self._names = first
+            body = self.block(node.body)
+            self._names = last
+            other = self.block(node.orelse)
         self._names = before
+        if body or other:
+            # What follows may not be executed.
+            self._facts.doubts += 1
         if "return" in (body, other):
             before.add(first if other == "return" else last)
         else:
@@ -203,7 +226,8 @@ class _Reader:
         """Evaluates a loop. One over unknown values may be executed any number of times."""
         for item in self._items(loop.iter):
             self._assign(loop.target, item)
-            end = self.block(loop.body)
+            with self._facts.doubting(item is NOTHING):
+                end = self.block(loop.body)
             if item is not NOTHING and end in ("return", "break"):
                 return end if end == "return" else ""
         return self.block(loop.orelse)
@@ -225,6 +249,8 @@ class _Reader:
             place = (self._path, choice.other, name)
             noted = Uncertain(what="variable", used=choice.used)
             self._facts.uncertain.setdefault(place, noted)
+            if self._facts.strict:
+                return NOTHING
         return self._names.get(name, self._functions.get(name, NOTHING))
 
     @staticmethod
@@ -291,8 +317,10 @@ class _Reader:
         first, *others = loops
         for value in self._items(first.iter):
             self._assign(first.target, value)
-            if not any(self._holds(test) is False for test in first.ifs):
-                self._collect(others, item, found)
+            held = [self._holds(test) for test in first.ifs]
+            if False not in held:
+                with self._facts.doubting(None in held or value is NOTHING):
+                    self._collect(others, item, found)
 
     def value(self, node: ast.expr) -> Any:
         """The value of an expression; `NOTHING` if it is unknown."""
@@ -360,6 +388,8 @@ class _Reader:
             place = Place(self._path, node.lineno, node.col_offset)
             holds = place not in self._facts.reversed
             self._facts.conditionals.setdefault(place, node.body.lineno)
+            if self._facts.strict:
+                return NOTHING
         return self.value(node.body if holds else node.orelse)
 
     def _logical(self, node: ast.UnaryOp | ast.BoolOp | ast.Compare) -> Any:
@@ -402,11 +432,20 @@ class _Reader:
         if isinstance(node.func, ast.Attribute):
             name = node.func.attr
             holder = self.value(node.func.value)
-        conditions = [each.value for each in node.keywords if each.arg == "condition"]
-        if any(self.value(each) is False for each in conditions):
+        conditions = [self.value(each.value) for each in node.keywords if each.arg == "condition"]
+        if any(each is False for each in conditions):
             self._facts.leaves_out = True
             self._skip(node)
             return NOTHING  # the action is not executed, nor are those in it
+        doubt = any(each is not True and each is not None for each in conditions)
+        with self._facts.doubting(doubt or name in _ON_OTHER_EVENTS):
+            return self._held_call(node, name if named else "", holder, later=later)
+
+    def _held_call(self, node: ast.Call, name: str, holder: Any, *, later: bool) -> Any:
+        """The value of a call whose condition holds; its name is empty if it has none.
+
+        `holder` is the object whose method is called.
+        """
         space = self._facts.namespace
         is_kept = name in ("append", "extend") and isinstance(holder, list)
         function = self._functions.get(name)
@@ -424,7 +463,7 @@ class _Reader:
             for each in node.keywords
             if each.arg not in ("condition", "target_action")
         )
-        if not named:
+        if not name:
             return NOTHING
         if function is not None and isinstance(node.func, ast.Name):
             return self._called(function, places, words)
@@ -449,17 +488,25 @@ class _Reader:
                 holder += more
             return NOTHING
         if name in SHARES:
-            return self._facts.package(text(words.get("package", first)))
+            folder = self._facts.package(text(words.get("package", first)))
+            # The files of a package are not in the folder in which it is installed.
+            return NOTHING if self._facts.strict and name in PREFIXES else folder
         if name in SAME:
             return words if name == "dict" and words else first
         if name == "dirname":
             return str(PurePosixPath(text(first)).parent)
         if name == "open" or name in PASSED:
+            if name == "open" and isinstance(node.func, ast.Name) and _reads(places, words):
+                origin = Origin(file=shown_path(self._path), line=node.lineno)
+                self._facts.need("file", text(first), origin)
             return first if name == "open" else holder
         if name == "replace" and isinstance(holder, str) and is_known(*places[:1]):
             return self._replaced(holder, places, node.lineno)
         if name in ("process_file", "process", "process_doc"):
             # For process_doc, the document is the text of the file that xacro.parse has read.
+            if name == "process_file":
+                origin = Origin(file=shown_path(self._path), line=node.lineno)
+                self._facts.need("file", text(first), origin)
             return self._processed(text(first), words.get("mappings", {}))
         if name in ("safe_load", "full_load", "load") and is_module(node.func, "yaml"):
             # A file that was opened is its path.
@@ -478,10 +525,17 @@ class _Reader:
             return NOTHING
         if later:
             made = functools.partial(meaning, self._classes, first, places, words)
+            made = functools.partial(self._begin, made, node.lineno, self._facts.doubts > 0)
             self._started.append(Later(made, self._facts.namespace))
             return self._started[-1]
         self._classes.line = node.lineno
         return meaning(self._classes, first, places, words)
+
+    def _begin(self, make: Callable[[], Any], line: int, doubt: bool) -> Any:
+        """Starts an action that is assigned in a line, perhaps only under a condition."""
+        self._classes.line = line
+        with self._facts.doubting(doubt):
+            return make()
 
     def _replaced(self, held: str, places: list[Any], line: int) -> str:
         """A text in which a launch file replaces parts. In that of a file, nothing is replaced.

@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from cartwheel.codes.files import LAUNCH_VALUE_UNKNOWN
@@ -17,6 +18,7 @@ from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
+from cartwheel.description.launches.mistakes.absence import Absence
 from cartwheel.description.launches.python_launch import read_python
 from cartwheel.description.launches.python_variables import Place
 from cartwheel.description.launches.use import ABSENT, Facts
@@ -102,7 +104,8 @@ def _left_out(path: Path, why: str, what: str) -> LaunchUse:
 def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]:
     """What a launch file starts, also with other values of its arguments."""
     facts = facts_of(path, packages, {}, effort)
-    yield from uses_of(path, facts)
+    needed = partial(_needed, path, packages, effort)
+    yield from needed(uses_of(path, facts), {})
     if facts.count > INCLUDES:
         yield _left_out(path, f"the launch file includes more than {INCLUDES} files", "not all are")
     known = {description for description, _ in facts.descriptions}
@@ -120,7 +123,7 @@ def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]
         other.raw = {place for place, number in enumerate(new) if number in other.raw}
         other.descriptions = [other.descriptions[number] for number in new]
         if new:
-            yield from uses_of(path, other, given.values())
+            yield from needed(uses_of(path, other, given.values()), given)
     if facts.leaves_out:
         yield from _switched(path, packages, facts, effort)
 
@@ -142,9 +145,29 @@ def _switched(path: Path, packages: Packages, facts: Facts, effort: Effort) -> I
         other = facts_of(path, packages, given, effort)
         new = kinds and other.gazebos.kinds - kinds if facts.simulated else other.simulated
         if new and other.descriptions:
-            for use in uses_of(path, other):
+            for use in _needed(path, packages, effort, uses_of(path, other), given):
                 yield replace(use, switched=tuple(given.items()))
             return
+
+
+def _needed(
+    path: Path,
+    packages: Packages,
+    effort: Effort,
+    uses: Sequence[LaunchUse],
+    arguments: Mapping[str, str],
+) -> list[LaunchUse]:
+    """What a launch file starts with these arguments, with the missing files that it needs.
+
+    The launch file is read once more, because only what is certain counts.
+    """
+    if not any(each.simulated and each.description is not None for each in uses):
+        return [*uses]
+    facts = facts_of(path, packages, arguments, effort, strict=True)
+    if not facts.missing or facts.count > INCLUDES:
+        return [*uses]
+    stopped = tuple(Absence(path, facts.folders, effort).certain(facts.missing))
+    return [replace(each, stopped=stopped) for each in uses]
 
 
 def facts_of(
@@ -153,6 +176,8 @@ def facts_of(
     arguments: Mapping[str, str],
     effort: Effort,
     others: Collection[Place] = (),
+    *,
+    strict: bool = False,
 ) -> Facts:
     """The contents of a launch file that is started with these arguments.
 
@@ -162,6 +187,7 @@ def facts_of(
         arguments: Its arguments.
         effort: What reading it may cost.
         others: Expressions with an unknown condition that have their other value.
+        strict: Whether only what is certain counts; see `Facts.strict`.
     """
     facts = Facts(
         find=packages.found,
@@ -170,6 +196,7 @@ def facts_of(
         effort=effort,
         file=path,
         reversed=others,
+        strict=strict,
     )
     _read(path, arguments, facts, 0)
     facts.read_spawned()
@@ -273,7 +300,8 @@ def chosen(description: Path, uses: Iterable[LaunchUse]) -> LaunchUse | None:
     """The launch file for a description: one that starts Gazebo and controllers, if there is one.
 
     One that starts Gazebo with its default arguments, and more than the publisher of joint states,
-    comes first. Among equal ones it is the first by the number of unknown arguments and by path.
+    comes first, unless a file that it needs is missing. Among equal ones it is the first by the
+    number of unknown arguments and by path.
     """
     path = description.resolve()
     own = [
@@ -316,9 +344,10 @@ def starters(
     return [each for _, each in others]
 
 
-def _order(use: LaunchUse) -> tuple[bool, bool, bool, int, bool, int, int, str]:
+def _order(use: LaunchUse) -> tuple[bool, bool, bool, bool, int, bool, int, int, str]:
     return (
         not use.simulated,
+        bool(use.stopped),
         bool(use.switched),
         # Another launch file may include it and state the argument.
         use.lacking,

@@ -9,7 +9,7 @@ import contextlib
 import os
 import re
 import shlex
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -26,7 +26,7 @@ from cartwheel.description.launches.controllers import (
 )
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.gazebos import Gazebos
-from cartwheel.description.launches.launch_use import Unfound
+from cartwheel.description.launches.launch_use import Missing, MissingFile, Unfound
 from cartwheel.description.launches.python_variables import Place, Uncertain
 from cartwheel.description.launches.spawning import (
     MODEL_SPAWNERS,
@@ -51,6 +51,17 @@ _SPAWNERS = MODEL_SPAWNERS | {"gzserver", "gzclient", "gz_sim", "gazebo"}
 _SERVERS = frozenset({"gazebo", "gzserver", "gz", "ign"})
 """Commands that start Gazebo."""
 _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
+_STARTERS: Mapping[tuple[str, str], tuple[str, ...]] = {
+    ("gazebo_ros", "empty_world.launch"): ("world_name",),
+    ("gazebo_ros", "gazebo.launch.py"): ("world",),
+    ("gazebo_ros", "gzserver.launch.py"): ("world",),
+    ("ros_gz_sim", "gz_sim.launch.py"): ("gz_args",),
+    ("ros_gz_sim", "gz_server.launch.py"): ("world_sdf_file",),
+    ("ros_ign_gazebo", "ign_gazebo.launch.py"): ("ign_args", "gz_args"),
+}
+"""The arguments that name the world, of the launch files of these packages that start Gazebo."""
+_PRINTING = frozenset({"xacro", "xacro.py", "cat"})
+"""Commands that fail if their file does not exist."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
 
 
@@ -144,6 +155,15 @@ class Facts:
     """Their values that are stated to be valid."""
     leaves_out: bool = False
     """Whether a condition that does not hold leaves out a part."""
+    strict: bool = False
+    """Whether only what is certain counts: no package stands for another one, and what depends on
+    an unknown condition is in doubt. `missing` is then filled."""
+    doubts: int = 0
+    """The number of reasons why what is being read may not be executed."""
+    missing: list[MissingFile] = field(default_factory=list)
+    """Stated files that do not exist where they are stated."""
+    folders: set[Path] = field(default_factory=set)
+    """The folders of packages that were found."""
 
     @contextlib.contextmanager
     def within(self, space: str) -> Iterator[None]:
@@ -152,13 +172,42 @@ class Facts:
         yield
         self.namespace = before
 
+    @contextlib.contextmanager
+    def doubting(self, doubt: bool = True) -> Iterator[None]:
+        """Reads what is in the block, which may not be executed."""
+        self.doubts += doubt
+        try:
+            yield
+        finally:
+            self.doubts -= doubt
+
+    def need(self, what: Missing, text: str, origin: Origin | None) -> None:
+        """Notes a file without which the launch file does not start, if it does not exist."""
+        name = text.strip()
+        if not self.strict or self.doubts or not name or UNKNOWN in name:
+            return
+        self.effort.spend(_LOOK)
+        if not is_file(Path(name)):
+            origin = origin or Origin(file=str(self.file))
+            self.missing.append(MissingFile(what=what, name=name, origin=origin))
+
+    def need_text(self, words: Sequence[str], origin: Origin | None) -> None:
+        """Notes the file of a command that prints a description, if it does not exist."""
+        program = words[0].rpartition("/")[2] if words else ""
+        if program in _PRINTING:
+            for word in words[1:]:
+                if ":=" not in word and word.endswith(variants.SUFFIXES):
+                    self.need("file", word, origin)
+
     def package(self, name: str) -> str:
         """The folder of a package as text, with an unknown part if it is not found."""
         self.effort.search(name.strip())
         folder = self.find(name.strip()) if UNKNOWN not in name else None
         if folder is None and UNKNOWN not in name and name.strip() not in {*_GAZEBO, "xacro"}:
             self.absent[f'package "{name.strip()}"'] = None
-        folder = folder or self.home
+        if folder is not None:
+            self.folders.add(folder)
+        folder = folder or (None if self.strict else self.home)
         return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
 
     def describe(self, text: str, origin: Origin) -> int | None:
@@ -339,7 +388,9 @@ class Facts:
                         self.absent[f'model "{spawn.model}"'.replace(UNKNOWN, "…")] = None
                 self.spawns.append(replace(spawn, described=described))
             else:
-                self._begin(world_in(words) or values.get("world_sdf_file", ""))
+                world = world_in(words) or values.get("world_sdf_file", "")
+                self._begin(world)
+                self.need("world" if package == "gazebo_ros" else "gz world", world, origin)
             self.gazebos.add_node(package, () if executable in MODEL_SPAWNERS else words, values)
         if package in BRIDGES:
             for word in words:
@@ -368,11 +419,12 @@ class Facts:
         elif path not in self.bridges:
             self.bridges.append(path)
 
-    def command(self, words: list[str]) -> None:
+    def command(self, words: list[str], origin: Origin | None = None) -> None:
         """Adds what a command starts, such as ``gazebo arena.world``."""
-        if words and words[0].rsplit("/", 1)[-1] in _SERVERS:
+        if words and (server := words[0].rsplit("/", 1)[-1]) in _SERVERS:
             self.simulated = True
             self._begin(world_in(words))
+            self.need("gz world" if server in ("gz", "ign") else "world", world_in(words), origin)
         self.gazebos.add_command(words)
         for program, *rest in shell_commands(words):
             self.effort.spend(len(rest))
@@ -459,6 +511,9 @@ class Facts:
         arguments: Mapping[str, str],
         depth: int,
         inherited: Mapping[str, str] = MappingProxyType({}),
+        *,
+        origin: Origin | None = None,
+        places: Mapping[str, Origin] = MappingProxyType({}),
     ) -> None:
         """Reads an included launch file if it exists.
 
@@ -467,6 +522,8 @@ class Facts:
             arguments: The arguments that it receives.
             depth: The number of launch files that include the including one.
             inherited: Further arguments, which it inherits.
+            origin: Where it is included; None if only the file is known.
+            places: Where its arguments are stated, if this is known, by their names.
         """
         if _WORLD.search(text.rsplit("/", 1)[-1]):
             self.simulated = True
@@ -476,6 +533,9 @@ class Facts:
                 self._begin(world_in(split(arguments.get(name, ""))))
         path = Path(text.strip())
         is_own = UNKNOWN not in text and depth < DEEPEST and is_file(path)
+        self.need("launch file", text, origin)
+        if not is_own:
+            self._need_world(path, {**inherited, **arguments}, places, origin)
         absent = any(each.startswith("package ") for each in self.absent)
         is_sure = "gazebo_ros" in path.parts or (not absent and UNKNOWN not in text)
         self.gazebos.add_launch_file(path.name, arguments, is_own=is_own, is_sure=is_sure)
@@ -484,3 +544,19 @@ class Facts:
             given = {**inherited, **arguments}
             self.includes.append((path, given))
             self.read(path, given, self, depth + 1)
+
+    def _need_world(
+        self,
+        path: Path,
+        arguments: Mapping[str, str],
+        places: Mapping[str, Origin],
+        origin: Origin | None,
+    ) -> None:
+        """Notes the world that a launch file of Gazebo's packages starts, if it does not exist."""
+        for (package, name), stated in _STARTERS.items():
+            if package in path.parts and name == path.name:
+                for each in stated:
+                    value = arguments.get(each, "")
+                    world = world_in(split(value)) if each.endswith("_args") else value
+                    kind: Missing = "world" if package == "gazebo_ros" else "gz world"
+                    self.need(kind, world, places.get(each, origin))

@@ -71,7 +71,7 @@ class _Reader:
             given = {
                 child.attributes.get("name", ""): self._given_value(child)
                 for child in node.children
-                if child.tag in ("arg", "let") and self._holds(child)
+                if child.tag in ("arg", "let") and self._may_hold(child)
             }
             if node.attributes.get("pass_all_args") == "true":
                 self._facts.effort.spend(len(self._arguments))
@@ -82,7 +82,15 @@ class _Reader:
             near = "dirname" in stated and file.endswith(".launch.xml")
             is_ros2 = near or file.endswith(".py") or "find-pkg-share" in stated
             with facts.within(self._space(node)):
-                facts.include(file, given, self._depth, self._arguments if is_ros2 else {})
+                inherited = self._arguments if is_ros2 else {}
+                places = {
+                    child.attributes.get("name", ""): child.origin
+                    for child in node.children
+                    if child.tag in ("arg", "let")
+                }
+                facts.include(
+                    file, given, self._depth, inherited, origin=node.origin, places=places
+                )
         elif tag == "param":
             self._parameter(node)
         elif tag == "rosparam":
@@ -91,6 +99,7 @@ class _Reader:
                 certain = not self._inside_node and "param" not in node.attributes
                 space = self._value(node, "ns")
                 facts.parameters(self._value(node, "file"), space, certain=certain)
+                facts.need("parameters", self._value(node, "file"), node.origin)
                 if certain:
                     self._find(node, space)
             elif node.attributes.get("command", "load") == "load" and has_controllers(node.text):
@@ -98,7 +107,7 @@ class _Reader:
         elif tag == "ros_gz_bridge":
             facts.bridge(self._value(node, "config_file"))
         elif tag == "executable":
-            facts.command(split(self._value(node, "cmd")))
+            facts.command(split(self._value(node, "cmd")), node.origin)
         elif tag == "node":
             kind = "exec" if "exec" in node.attributes else "type"
             package = self._value(node, "pkg")
@@ -168,12 +177,16 @@ class _Reader:
 
     def _given_value(self, node: Node) -> str:
         """The argument for an included file. roslaunch accepts a default as well as a value."""
+        if self._facts.strict and self._condition(node) is None:
+            return UNKNOWN
         return self._value(node, "value" if "value" in node.attributes else "default")
 
     def _parameter(self, node: Node) -> None:
         facts = self._facts
         if "from" in node.attributes:
             facts.parameters(self._value(node, "from"))
+        if facts.strict:
+            self._need(node)
         parameter = self._value(node, "name")
         if not parameter.endswith("description"):
             stated = next((name for name in ("command", "textfile") if name in node.attributes), "")
@@ -186,19 +199,44 @@ class _Reader:
             if value and (name != "value" or "command" in value):
                 facts.store_parameter(parameter, self._described(node, name))
 
+    def _need(self, node: Node) -> None:
+        """Notes the files that ROS reads for a parameter."""
+        self._facts.need("file", self._value(node, "textfile"), node.origin)
+        # In ROS 2, the command is a substitution.
+        name = "value" if "command" in node.attributes.get("value", "") else "command"
+        self._facts.need_text(split(self._value(node, name)), node.origin)
+
     def _described(self, node: Node, name: str) -> int | None:
         """Adds the description that an attribute states; its number as for `Facts.describe`."""
         return self._facts.describe(self._value(node, name), node.origin)
 
     def _holds(self, node: Node) -> bool:
-        """Whether the conditions of an element hold. An unknown condition holds."""
+        """Whether the conditions of an element hold. An unknown condition holds, unless only what
+        is certain counts.
+        """
+        holds = self._condition(node)
+        if holds is None and self._facts.strict:
+            if node.tag in ("arg", "let"):
+                self._arguments[node.attributes.get("name", "")] = UNKNOWN
+            return False
+        return holds is not False
+
+    def _may_hold(self, node: Node) -> bool:
+        """Whether the conditions of an element hold or are unknown."""
+        return self._condition(node) is not False
+
+    def _condition(self, node: Node) -> bool | None:
+        """Whether the conditions of an element hold; None if one of them is unknown."""
+        known = True
         for name, wanted in (("if", True), ("unless", False)):
             if name in node.attributes:
                 value = self._value(node, name).strip()
-                if UNKNOWN not in value and (value not in _FALSE) is not wanted:
+                if UNKNOWN in value:
+                    known = False
+                elif (value not in _FALSE) is not wanted:
                     self._facts.leaves_out = True
                     return False
-        return True
+        return True if known else None
 
     def _value(self, node: Node, name: str) -> str:
         text = limited(node.attributes.get(name, ""))
@@ -223,7 +261,9 @@ class _Reader:
         words = rest.split(None, 1)
         first = words[0] if words else ""
         if kind in ("arg", "var"):
-            return self._arguments.get(first, UNKNOWN)
+            value = self._arguments.get(first, UNKNOWN)
+            # Some launch files state an empty default for what the user must state.
+            return value or UNKNOWN if self._facts.strict else value
         if kind in ("find", "find-pkg-share"):
             return self._facts.package(first)
         if kind in ("env", "optenv"):
@@ -232,6 +272,8 @@ class _Reader:
             if ros is not None:
                 return ros
             absent = "" if kind == "optenv" else UNKNOWN
+            if self._facts.strict:
+                return UNKNOWN
             return os.environ.get(first, words[1] if len(words) > 1 else absent)
         if kind == "dirname":
             return str(self._path.parent)
@@ -247,8 +289,10 @@ class _Reader:
         functions: Mapping[str, Callable[..., Any]] = {
             "arg": self._known,
             "find": lambda name: _certain(self._facts.package(name)),
-            "env": lambda name: self._ros(name) or os.environ[name],
-            "optenv": lambda name, default="": self._ros(name) or os.environ.get(name, default),
+            "env": lambda name: self._ros(name) or self._variables()[name],
+            "optenv": lambda name, default="": (
+                self._ros(name) or self._variables().get(name, default)
+            ),
             "dirname": lambda: str(self._path.parent),
         }
         self._facts.effort.spend(len(self._arguments))
@@ -259,6 +303,12 @@ class _Reader:
         for name, plain in functions.items():
             names[name] = Function(name, lambda _, *args, plain=plain: plain(*args))
         return evaluated(text, names, self._facts.effort)
+
+    def _variables(self) -> Mapping[str, str]:
+        """The environment, which is unknown on other computers."""
+        if self._facts.strict:
+            raise _UnknownError
+        return os.environ
 
     def _ros(self, name: Any) -> str | None:
         """The value of an environment variable that ROS sets; None for any other one."""
