@@ -3,7 +3,7 @@
 import pytest
 from tests.corpus.carts import cart, plugin, written
 
-from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, XACRO_NAME_UNKNOWN
+from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, MACRO_ABSENT, XACRO_NAME_UNKNOWN
 from cartwheel.codes.robot import (
     BASE_WITHOUT_COLLISION,
     INERTIA_MISSING,
@@ -161,9 +161,27 @@ def test_what_is_missing_in_a_model_that_was_not_found_is_explained_by_its_inclu
         f"<size>0.1 0.1 0.1</size></box></geometry></collision></link>{leg}</model></sdf>"
     )
     faults = try_robot(path, standing=0.5).faults
-    assert {each.test for each in faults} == {"plugin", "stand"}
-    assert all((each.code is FILE_MISSING) is explained for each in faults), faults
-    assert all(each.source == "file" for each in faults)
+    # The model may be elsewhere.
+    about = {each.test: (each.code, each.source) for each in faults}
+    assert about.keys() == {"plugin", "stand"}
+    assert about["stand"] == (FILE_MISSING, "unknown")
+    assert (about["plugin"] == (FILE_MISSING, "unknown")) is explained
+
+
+@pytest.mark.parametrize(
+    ("part", "reason"), [("body", "unknown"), ("lidar_3d", "file"), ("camera", "file")]
+)
+def test_a_body_may_be_in_a_model_that_was_not_found_and_a_sensor_carries_none(
+    tmp_path, part, reason
+):
+    path = tmp_path / "model.sdf"
+    path.write_text(
+        '<sdf version="1.9"><model name="robot"><link name="mast"><inertial><mass>1</mass>'
+        f"</inertial></link><include><uri>model://no_such_{part}</uri></include>"
+        f"<plugin name='view' filename='libDrawForcePlugin.so'/></model></sdf>"
+    )
+    (fault,) = try_robot(path, standing=0.5).faults
+    assert (fault.test, fault.source) == ("stand", reason)
 
 
 @pytest.mark.parametrize("end", ["jinja", "erb", "in"])
@@ -260,7 +278,9 @@ def test_a_robot_whose_base_is_in_an_absent_include_is_incomplete(tmp_path):
     assert [(each.test, each.code) for each in verdict.faults] == [("plugin", INCLUDE_ABSENT)]
     assert verdict.outcome != "file"
     whole = sensor + '<link name="base"/>'
-    assert try_robot(expanded(tmp_path, INCLUDE, CALL, whole, FOR_GAZEBO), standing=1.0).good
+    (fault,) = try_robot(expanded(tmp_path, INCLUDE, CALL, whole, FOR_GAZEBO), standing=1.0).faults
+    # Whether the arm would work is unknown.
+    assert (fault.test, fault.code, fault.source) == ("load", MACRO_ABSENT, "unknown")
 
 
 @pytest.mark.parametrize(

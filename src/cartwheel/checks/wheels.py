@@ -100,6 +100,19 @@ def wheel_widths(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) ->
     return robot.once(f"widths of {_name(robot, kind)}", joint, compute)
 
 
+def wheel_offset(robot: Robot, joint: Joint) -> float:
+    """Distance of the middle of a round wheel's collisions from its axis, m; 0 without any."""
+
+    def compute() -> float:
+        cloud = _cloud(robot, joint, robot.collisions)
+        if cloud is None:
+            return 0.0
+        along = cloud @ _across(np.array(joint.axis.xyz)).T
+        return float(np.abs(along.max(axis=0) + along.min(axis=0)).max()) / 2
+
+    return robot.once("offset of collisions", joint, compute)
+
+
 def _cloud(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:
     """Wheel vertices in the joint frame, shape (n, 3), m; None without geometry of this kind."""
 

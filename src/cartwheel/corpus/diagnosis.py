@@ -22,13 +22,12 @@ from cartwheel.corpus.causes.falls import (
     cause_of_fall,
     falls_through,
     has_devices,
-    is_built_model,
     lost_wheel,
     need_not_stand,
 )
 from cartwheel.corpus.causes.inertias import flywheel, sluggish
 from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
-from cartwheel.corpus.faults import BASES, Fault, Test, coded, most_severe
+from cartwheel.corpus.faults import BASES, Fault, Test, coded, is_lost_model, most_severe
 from cartwheel.corpus.missing_movers import (
     held_bases,
     is_started,
@@ -104,9 +103,24 @@ def faults(
         description: The robot.
         findings: Returns the findings of `cartwheel check`, which takes time.
     """
+    none = True
     for fault in _faults(verdict, description, findings):
+        none = False
         absent = None if fault.reason is None else _absent_model(fault.reason, description)
         yield fault if absent is None else replace(fault, reason=absent)
+    if none:
+        yield from _lost_parts(description)
+
+
+def _lost_parts(description: RobotDescription) -> Iterator[Fault]:
+    """Calls of macros and models that are left out, because their files are not here.
+
+    What they would add to the robot may work or not.
+    """
+    for each in description.diagnostics:
+        called = each.code is files.MACRO_ABSENT and each.values.get("package")
+        if called or is_lost_model(each):
+            yield Fault(test="load", subject=str(each.values["name"]), reason=each, sure=False)
 
 
 def _absent_model(reason: Diagnostic, description: RobotDescription) -> Diagnostic | None:
@@ -185,8 +199,9 @@ def _load_faults(
     yield from _files_of_author(verdict, description)
     for joint, dropped in dropped_joints(verdict, description):
         yield Fault(test="load", subject=joint, reason=dropped)
-    for built in filter(is_built_model, description.diagnostics):
-        yield Fault(test="load", subject=str(built.values["name"]), reason=built)
+    for built in filter(is_lost_model, description.diagnostics):
+        if "template" in built.values:
+            yield Fault(test="load", subject=str(built.values["name"]), reason=built)
     if stopped is not None:
         yield Fault(test="load", subject=str(stopped.values["file"]), reason=stopped)
 

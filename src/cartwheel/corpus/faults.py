@@ -85,7 +85,8 @@ class Fault:
         """``file`` if the reason is a mistake in the robot's files, and certain."""
         if self.reason is None or not self.sure or self.code in _OURS:
             return "unknown"
-        if self.test == "load" and _is_outside(self.reason):
+        outside = _is_outside(self.reason)
+        if outside == "model" or (outside and self.test == "load"):
             return "unknown"
         if self.reason.values.get("template"):
             # A build makes the file that is missing.
@@ -94,17 +95,28 @@ class Fault:
         return "unknown" if self.reason.values.get("cause") in ours else "file"
 
 
-def _is_outside(reason: Diagnostic) -> bool:
-    """Whether a description cannot be read because of what is not among the robot's files: a
-    package, or the value of an argument. A package with a similar name may be meant.
+def _is_outside(reason: Diagnostic) -> str:
+    """What is not among the robot's files, so that it cannot be read, or lacks a part.
 
-    A package that was not found may also define the unknown name of a property, macro or block.
+    A package with a similar name may be meant, and a file may be missing in a model's folder. A
+    package that was not found may also define the unknown name of a property, macro or block.
+
+    Returns:
+        ``package``, ``model``, ``argument`` for the value of an argument, or an empty text.
     """
-    if reason.code is files.XACRO_NAME_UNKNOWN and reason.values.get("unfound"):
-        return True
-    kind = {files.FILE_MISSING: "package", files.XACRO_NAME_UNKNOWN: "argument"}
-    stated = reason.values.get("kind")
-    return kind.get(reason.code, "") == stated and not reason.values.get("meant")
+    values = reason.values
+    if reason.code is files.XACRO_NAME_UNKNOWN and values.get("unfound"):
+        return "package"
+    kinds = {files.FILE_MISSING: ("package", "model"), files.XACRO_NAME_UNKNOWN: ("argument",)}
+    kind = str(values.get("kind"))
+    if kind not in kinds.get(reason.code, ()) or values.get("meant"):
+        return ""
+    return "" if kind == "model" and "template" in values else kind
+
+
+def is_lost_model(reason: Diagnostic) -> bool:
+    """Whether a model that the robot includes is left out, because its file is not here."""
+    return reason.values.get("left_out") == "include" and reason.values.get("kind") == "model"
 
 
 def most_severe(found: Iterable[Diagnostic]) -> Diagnostic | None:

@@ -322,7 +322,8 @@ class Verdict:
         A robot that only Cartwheel loads does not.
         """
         return bool(self.drives or self.reaches or self.spins or self.flights) and not any(
-            fault.test in MOTION or fault.test == "load" for fault in self.faults
+            fault.test in MOTION or (fault.test == "load" and fault.source == "file")
+            for fault in self.faults
         )
 
     @property

@@ -245,6 +245,9 @@ def _cause(
         for each in found
         if each.code in codes and not _only_measures(each) and (ratio < 0 or not _reverses(each))
     )
+    if unknown is None and skids is not None and 0.0 <= ratio < 1.0:
+        # Wheels that slide turn the robot by less than predicted if other wheels carry it.
+        unknown = skids
     largest = _largest(factors, ratio)
     driven_twice = any(each.code is running.JOINT_DRIVEN_TWICE for each in found)
     return unknown if unknown is None or largest is None or driven_twice else largest

@@ -8,7 +8,7 @@ from collections.abc import Sequence, Set
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links
 from cartwheel.codes import devices, files, robot
-from cartwheel.corpus.faults import coded, most_severe
+from cartwheel.corpus.faults import coded, is_lost_model, most_severe
 from cartwheel.corpus.movers import LEFT_OUT, may_move
 from cartwheel.corpus.verdict import Stand, Verdict
 from cartwheel.description.kinematics import carried
@@ -86,7 +86,12 @@ def cause_of_fall(
     if stand.floats:
         return coded(found, frozenset({robot.SINKS_IN_WATER}))
     lost = next(
-        (each for each in found if is_body_lost(each, description) or is_built_model(each)), None
+        (
+            each
+            for each in found
+            if is_body_lost(each, description) or (is_lost_model(each) and not _is_light(each))
+        ),
+        None,
     )
     if lost is not None or wheel is not None:
         return lost or wheel
@@ -283,13 +288,6 @@ def is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
         each.code is files.LINK_RECONNECTED
         and not each.values.get("parent")
         and each.values.get("link") not in held
-    )
-
-
-def is_built_model(each: Diagnostic) -> bool:
-    """Whether a model is left out because a build makes its file from a template."""
-    return each.values.get("left_out") == "include" and bool(
-        each.values.get("kind") == "model" and each.values.get("template")
     )
 
 

@@ -1,0 +1,48 @@
+"""Round wheels whose middle is not on their axis."""
+
+import pytest
+from tests.corpus.carts import RADIUS, cart, plugin, written
+
+import cartwheel
+from cartwheel.codes.robot import SKID_STEERING, WHEEL_NOT_ROUND
+from cartwheel.corpus import try_robot
+from cartwheel.corpus.causes.drives import cause_of_drive
+
+WHEEL = '<collision><geometry><cylinder radius="0.05" length="0.02"/>'
+
+
+def eccentric(offset, times=2):
+    """The cart, with wheels whose collisions are moved by a distance in m, at right angles to z."""
+    moved = WHEEL.replace("<geometry>", f'<origin xyz="{offset} 0 0"/><geometry>')
+    text = cart()
+    assert text.count(WHEEL) == 2
+    return text.replace(WHEEL, moved, times)
+
+
+@pytest.mark.parametrize(
+    ("offset", "told"), [(0.0, False), (0.04 * RADIUS, False), (-0.06 * RADIUS, True)]
+)
+def test_a_wheel_that_turns_about_another_point_is_reported(tmp_path, offset, told):
+    found = cartwheel.check(written(tmp_path, eccentric(offset), plugin())).findings
+    off = [each for each in found if each.code is WHEEL_NOT_ROUND]
+    assert len(off) == 2 * told
+    assert all(each.values["offset"] == pytest.approx(abs(offset)) for each in off)
+
+
+def test_a_base_that_has_to_climb_its_own_wheels_is_explained(tmp_path):
+    heavy = eccentric(0.6 * RADIUS).replace('<mass value="2"/>', '<mass value="40"/>', 1)
+    weak = plugin(more="<wheelTorque>0.5</wheelTorque><torque>0.5</torque>")
+    verdict = try_robot(written(tmp_path, heavy, weak), standing=1.0)
+    reasons = {each.code for each in verdict.faults if each.test in ("drive", "turn")}
+    assert reasons == {WHEEL_NOT_ROUND}
+
+
+def test_wheels_that_slide_explain_any_slower_turn():
+    """Other wheels than assumed may carry the robot."""
+    sliding = SKID_STEERING.diagnostic("", values={"ratio": 0.33, "least": 0.33})
+    for ratio in (0.28, 0.05):
+        cause = cause_of_drive([sliding], ratio, turning=True)
+        assert cause is not None
+        assert cause.code is SKID_STEERING
+    assert cause_of_drive([sliding], -0.28, turning=True) is None
+    assert cause_of_drive([sliding], 0.28) is None
