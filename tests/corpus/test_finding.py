@@ -242,15 +242,18 @@ def test_a_complete_part_of_a_launched_robot_is_a_part(folder, tmp_path):
     assert kinds(tmp_path, launched=["cart.xacro"]) == {"core.xacro": "part"}
 
 
-def test_models_without_plugins_and_sensors_are_scenery(folder, tmp_path):
+def test_models_without_plugins_sensors_and_movable_joints_are_scenery(folder, tmp_path):
+    joint = '<joint name="j"\n type="{}"><parent>a</parent><child>a</child></joint>'
     model = '<sdf version="1.6"><model name="m"><link name="a">{}</link></model></sdf>'
     found = folder(
         house_dot_sdf=model.format(""),
+        shed_dot_sdf=model.format(joint.format("fixed")),
+        arm_dot_sdf=model.format(joint.format("revolute")),
         eye_dot_sdf=model.format('<sensor name="s" type="camera"/>'),
         w_dot_sdf='<sdf version="1.6"><world name="w"/></sdf>',
     )
-    assert found == ["eye.sdf"]
-    assert kinds(tmp_path) == {"house.sdf": "scenery", "w.sdf": "world"}
+    assert found == ["arm.sdf", "eye.sdf"]
+    assert kinds(tmp_path) == {"house.sdf": "scenery", "shed.sdf": "scenery", "w.sdf": "world"}
 
 
 def test_a_model_config_without_its_file_does_not_stop_the_survey(folder):

@@ -495,10 +495,11 @@ def _explaining(
 def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:
     shared = (each for each in found if each.code is running.JOINT_SHARED)
     lost = next((each for each in shared if each.values.get("joint") == joint), None)
+    # With such an inertia, the gains do not matter.
     return (
         lost
-        or most_severe(each for each in found if each.code in _JOINTS and joint in _joints_of(each))
         or most_severe(each for each in found if _is_heavy(each, child))
+        or most_severe(each for each in found if each.code in _JOINTS and joint in _joints_of(each))
     )
 
 

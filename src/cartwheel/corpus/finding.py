@@ -34,7 +34,7 @@ _LONGEST = 4096
 """Maximum length of a path in Linux."""
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 _WORLDS = (".world", ".world.xacro", ".world.sdf")
-_ACTIVE = re.compile(r"<(?:plugin|sensor|include)\b")
+_ACTIVE = re.compile(r"""<(?:plugin|sensor|include|joint\b[^<>]*?\btype\s*=\s*["'](?!fixed))\b""")
 """Elements of an SDF model that is not scenery. An included model may contain the others."""
 _REFERENCE = re.compile(r"<(?:(/?)include\b|uri>\s*([^<>\s]{1,4096})\s*</uri>)")
 """The beginning or end of an ``<include>``, or a ``<uri>``."""
@@ -72,7 +72,7 @@ Kind = Literal["macros", "part", "world", "scenery", "old version"]
   another model includes, but no world and no launch file, and that is not fixed to the world and
   has no plugin that moves more than single joints.
 - ``world``: the file is a world.
-- ``scenery``: the file is an SDF model without plugins and sensors, such as a house.
+- ``scenery``: the file is an SDF model without plugins, sensors and movable joints.
 - ``old version``: the file of a model that its ``model.config`` does not choose.
 """
 

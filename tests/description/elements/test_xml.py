@@ -286,6 +286,15 @@ def test_bytes_that_are_not_utf_8_are_named():
         assert xml.parse((head + text).encode(encoding)).children[0].require("name") == "Tür"
 
 
+def test_a_plugin_outside_of_a_gazebo_element_is_named():
+    text = '<robot name="r"><link name="a"/><plugin name="b" filename="x.so"><z/></plugin></robot>'
+    root = xml.parse(text.encode(), "r.urdf")
+    root.all("link")
+    found = next(each for each in unread(root) if each.values.get("tag") == "plugin")
+    assert found.values["plugins"] == ("x.so",)
+    assert found.values["parameters"] == ("z",)
+
+
 @pytest.mark.wording
 @pytest.mark.parametrize(
     ("plugins", "end"),

@@ -190,6 +190,17 @@ def test_an_include_from_the_own_package_under_its_former_name(load, package):
     assert [line for line, _ in reported(robot, INCLUDE_ABSENT)] == [2]
 
 
+@pytest.mark.parametrize("start", ["file://", "$file://", ""])
+def test_an_include_by_a_path_of_another_computer_is_read_and_stops_xacro(load, start):
+    """A dollar before it makes it a relative path."""
+    path = f"{start}/opt/work/src/mine/urdf/base.xacro"
+    robot = load(INCLUDE.format(path), base=BASE)
+    assert [link.name for link in robot.links] == ["base"]
+    ((_, values),) = reported(robot, FILE_ELSEWHERE)
+    assert values["needed_for"] == "include"
+    assert not reported(robot, INCLUDE_ABSENT)
+
+
 @pytest.mark.parametrize("package", ["$(find former)", "package://former"])
 def test_an_include_under_a_former_name_never_leads_back_to_itself(load, package):
     robot = load(

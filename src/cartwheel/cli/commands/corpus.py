@@ -24,7 +24,10 @@ _KINDS: dict[Kind, tuple[str, str]] = {
     "macros": ("with macros only", "with macros only"),
     "part": ("part of a robot", "parts of robots"),
     "world": ("world", "worlds"),
-    "scenery": ("model without plugins and sensors", "models without plugins and sensors"),
+    "scenery": (
+        "model without plugins, sensors and movable joints",
+        "models without plugins, sensors and movable joints",
+    ),
     "old version": ("old version of a model", "old versions of models"),
 }
 """The singular and plural of each kind."""

@@ -76,7 +76,7 @@ def unread(
             meant=numbers.likely(child.tag, node._asked_children),
             form="<{}>",
             values=values,
-            lost=_subject(plugins),
+            lost=_subject(plugins, whole=child.tag == "plugin"),
             beside=next((_name_of(each) for each in node.children if each.tag == "plugin"), ""),
         )
 
@@ -99,12 +99,12 @@ def _attributes_in_text(node: Node) -> Iterator[Diagnostic]:
 
 
 def _plugins_in(node: Node) -> list[Node]:
-    """The plugins in an element."""
+    """The plugins in an element, or itself if it is one."""
     plugins, left = [], [node]
     while left:
         each = left.pop()
         left += reversed(each.children)
-        if each.tag == "plugin" and each is not node:
+        if each.tag == "plugin":
             plugins.append(each)
     return plugins
 
@@ -113,8 +113,15 @@ def _name_of(plugin: Node) -> str:
     return plugin.attributes.get("filename") or plugin.attributes.get("name", "")
 
 
-def _subject(plugins: Sequence[Node]) -> str:
-    """Plugins as the subject of a sentence; empty if there is none."""
+def _subject(plugins: Sequence[Node], *, whole: bool) -> str:
+    """Plugins as the subject of a sentence; empty if there is none.
+
+    Args:
+        plugins: The plugins in an element, outermost first.
+        whole: Whether the first one is the element itself.
+    """
+    if whole:
+        return f'"{_name_of(plugins[0])}" is'
     names = [f'"{_name_of(each)}"' for each in plugins]
     if len(names) > _SHOWN:
         names = [*names[:_SHOWN], f"{len(names) - _SHOWN} more"]
@@ -151,6 +158,8 @@ def _ignored(
             f"{what} has no effect: {reason}", origin=origin, severity="info", values=values
         )
     hint = f"Did you mean {form.format(meant)}?" if meant else ""
+    if (values.get("tag"), values.get("parent")) in (("plugin", "robot"), ("plugin", "link")):
+        hint = "Write it in a <gazebo> element."
     if not hint and beside and not lost:
         values = {**values, "beside": beside}
         hint = f'If it is a parameter of the plugin "{beside}", write it inside the <plugin>.'

@@ -97,16 +97,18 @@ def is_in_home(uri: str) -> bool:
 def report(uri: str, moved: Moved) -> Diagnostic:
     """Reports a file that is not where a description says.
 
-    It is an error if no other computer than the author's has the file, and it matters. Its value
-    ``needed_for`` then contains its use.
+    It is an error if no other computer than the author's has the file, and it matters, or if xacro
+    stops. Its value ``needed_for`` then contains its use.
     """
     lacking = FIND.search(uri)
     stops = f'Without the package "{lacking[1]}", ROS stops here. ' if lacking else ""
-    lost = moved.use if moved.use and is_in_home(uri) else ""
+    at_home = is_in_home(uri)
+    lost = moved.use if at_home or moved.use == "include" else ""
     message = f'"{uri}" does not exist, so "{moved.path}" is used'
     if lost:
+        where = "is in a home folder" if at_home else "does not exist"
         message = (
-            f'"{uri}" is in a home folder, so {_LOST[lost]} on other computers; here, '
+            f'"{uri}" {where}, so {_LOST[lost]}{" on other computers" * at_home}; here, '
             f'"{moved.path}" is used'
         )
     return FILE_ELSEWHERE.diagnostic(

@@ -71,10 +71,12 @@ class Absences:
                 raise
             return f"$(find {package})"
 
-    def leave_out_include(
+    def find_include(
         self, name: str, path: str, origin: Origin, *, active: Collection[str]
-    ) -> None:
-        """Reports an include whose file does not exist.
+    ) -> Path | None:
+        """The file of an include that does not exist where it is stated, if it is elsewhere.
+
+        An include whose file is nowhere is reported, and left out.
 
         Args:
             name: The file as the include states it, with its expressions evaluated.
@@ -84,12 +86,13 @@ class Absences:
         """
         found = FIND.search(name)
         package = found[1] if found else ""
-        self.files.append(AbsentFile(name, package))
         try:
-            self.packages.resolve(
-                name if package else path, origin, what="included file", without=active
-            )
+            return self.packages.resolve(
+                name if package else path, origin, what="included file", without=active,
+                use="include",
+            )  # fmt: skip
         except DescriptionError as error:
+            self.files.append(AbsentFile(name, package))
             template = f"{path}{_TEMPLATE}"
             made = is_file(Path(template))
             if made:
@@ -105,6 +108,7 @@ class Absences:
                     values={"file": name, "package": package, "template": template if made else ""},
                 )
             )
+            return None
 
     @property
     def may_define_macros(self) -> bool:

@@ -106,7 +106,11 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         ):
             original.process_include(element, macros, symbols, expand)
             return
-        run.absences.leave_out_include(name, path, element.origin, active=active())
+        found = run.absences.find_include(name, path, element.origin, active=active())
+        if found is not None:
+            element.setAttribute("filename", str(found))
+            original.process_include(element, macros, symbols, expand)
+            return
         replace_node(element, by=None)
 
     def leave_out_call(node: Element, symbols: object) -> None:
