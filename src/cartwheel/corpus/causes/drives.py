@@ -25,6 +25,8 @@ _PULLED = 0.5
 """Largest part of the turn rate for which wheels that point to one side account."""
 _REVERSED = 0.5
 """Part of the speed from which a base moves the other way, rather than hardly."""
+_UNEVEN = 0.5
+"""Smallest part of a predicted turn rate for which uneven weight on sliding wheels accounts."""
 _MOST = 0.5
 """Largest part of an error, of the logarithm of the speed, that a wrong size leaves unexplained if
 it explains most of it."""
@@ -88,7 +90,7 @@ def cause_of_drive(
         codes -= _NEVER_FASTER
     cause = _cause(found, ratio, codes, turning=turning, arc=arc)
     if cause is None and turning:
-        return _too_weak(found, ratio)
+        cause = _too_weak(found, ratio) or _slides_more(found, ratio)
     if cause is not None and cause.code is robot.SKID_STEERING and ratio > 1.0:
         # Wheels that slide slow the robot down, so it is the stated separation that is wrong.
         wrong = (each for each in found if each.code is robot.WHEEL_SEPARATION_MISMATCH)
@@ -139,6 +141,18 @@ def _too_weak(found: Sequence[Diagnostic], ratio: float) -> Diagnostic | None:
     )
     weak = (each for each in found if each.code is CONTROLLER_GAIN_TOO_LOW)
     return next((each for each in weak if slides and "sliding" in each.values), None)
+
+
+def _slides_more(found: Sequence[Diagnostic], ratio: float) -> Diagnostic | None:
+    """The finding that wheels slide, if the robot turns by less than predicted.
+
+    Wheels on which more of the weight rests than assumed slide more.
+    """
+    skids = next((each for each in found if each.code is robot.SKID_STEERING), None)
+    predicted = skids.values.get("ratio") if skids is not None else None
+    if skids is None or not isinstance(predicted, float):
+        return None
+    return skids if _UNEVEN * _least(skids, predicted) <= ratio < predicted else None
 
 
 def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
@@ -245,9 +259,6 @@ def _cause(
         for each in found
         if each.code in codes and not _only_measures(each) and (ratio < 0 or not _reverses(each))
     )
-    if unknown is None and skids is not None and 0.0 <= ratio < 1.0:
-        # Wheels that slide turn the robot by less than predicted if other wheels carry it.
-        unknown = skids
     largest = _largest(factors, ratio)
     driven_twice = any(each.code is running.JOINT_DRIVEN_TWICE for each in found)
     return unknown if unknown is None or largest is None or driven_twice else largest
