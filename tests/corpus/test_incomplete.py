@@ -208,6 +208,9 @@ def test_a_model_that_a_build_makes_from_a_template_is_no_fault_of_the_file(tmp_
     assert reason.values["template"] == str(body / f"body.sdf.{end}")
     (body / f"body.sdf.{end}").unlink()
     assert {each.source for each in try_robot(path, standing=0.5).faults} == {"file"}
+    for named, source in (("my-body/body.sdf", "file"), ("models/body/body.sdf", "unknown")):
+        (tmp_path / "CMakeLists.txt").write_text(f"add_custom_command(OUTPUT {named})")
+        assert {each.source for each in try_robot(path, standing=0.5).faults} == {source}
 
 
 SPAWNED = (

@@ -9,6 +9,7 @@ from pathlib import Path
 from cartwheel.codes import files, tags
 from cartwheel.description.elements.xml import Node, read_file
 from cartwheel.description.files import fuel
+from cartwheel.description.files.made_files import maker_of
 from cartwheel.description.losses import loss
 from cartwheel.description.model import PluginTag
 from cartwheel.description.sdf.context import (
@@ -21,9 +22,6 @@ from cartwheel.description.sdf.context import (
 from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.errors import DescriptionError, Origin
-
-_TEMPLATES = (".jinja", ".jinja2", ".j2", ".erb", ".em", ".in")
-"""Ends of the names of the files from which a build makes models."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,19 +180,12 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
     if (folder / "model.sdf").is_file():
         return folder / "model.sdf"
     wanted = best[1] if best is not None and best[1] else "model.sdf"
-    template = _template(folder / wanted)
-    made = (
-        f' Build its package: the build makes the file from "{template.name}".' if template else ""
-    )
+    maker = maker_of(folder / wanted)
+    made = f' Build its package: the build makes the file by "{maker.name}".' if maker else ""
     raise NotThereError(
         f'the model folder for "{uri.text}" contains no {wanted}',
         code=files.FILE_MISSING,
         origin=uri.origin,
-        values={"kind": "model", "name": uri.text, "template": str(template or "")},
+        values={"kind": "model", "name": uri.text, "template": str(maker or "")},
         hint=f"The folder is {folder}.{made}",
     )
-
-
-def _template(file: Path) -> Path | None:
-    """The file from which a build makes another one."""
-    return next((each for end in _TEMPLATES if (each := Path(f"{file}{end}")).is_file()), None)
