@@ -92,6 +92,19 @@ def test_controllers_whose_parameters_are_or_may_be_in_the_same_namespace_start(
     assert verdict.good, verdict.faults
 
 
+@pytest.mark.parametrize(
+    ("content", "space", "stated"),
+    [({"move": MOVE}, "x", "/x"), ({"move": MOVE}, "arm", None), (MOVE, "arm/move", None)],
+)
+def test_a_file_may_have_the_name_of_its_only_controller(arm, content, space, stated):
+    """A controller without a name has that of the namespace into which it is loaded."""
+    load = LOAD.format(f'ns="{space}"').replace("arm.yaml", "move.yaml")
+    bot = arm({}, load, spawner("arm"))
+    (bot.parent / "move.yaml").write_text(yaml.safe_dump(content))
+    found = misplaced(try_robot(bot, standing=0.5))
+    assert found == [("/arm", stated)] * (stated is not None)
+
+
 def test_another_launch_file_may_load_the_parameters(arm):
     wrong = LOAD.format(""), spawner("arm")
     right = LOAD.format("").replace("arm.yaml", "right.yaml")

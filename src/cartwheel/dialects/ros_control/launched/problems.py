@@ -21,7 +21,7 @@ from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.launches import LaunchUse, root_of
 from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.model import RobotDescription
-from cartwheel.dialects.ros_control.files import is_ros2, name_and_file, read_parameters
+from cartwheel.dialects.ros_control.files import is_ros2, name_and_file, read_parameters, read_yaml
 from cartwheel.dialects.ros_control.launched.names import ends_of, ros1_entries
 from cartwheel.dialects.ros_control.launched.own_managers import own_managers
 from cartwheel.errors import Diagnostic, Origin, PluginError
@@ -339,11 +339,12 @@ def _parameters(path: Path) -> dict[str, bool] | None:
     file = name_and_file(path)[1]
     try:
         content = read_parameters(path)
+        # The launch file decides about the name of a single controller without one.
+        single = file == path and isinstance(read_yaml(file).get("type"), str)
     except PluginError:
         return None
     if is_ros2(content):
         return {}
-    single = file == path and file.stem in content and len(content) == 1
     entries = ros1_entries(content, str(path))
     names = [f"{entry.namespace}/{entry.name}".strip("/") for entry in entries]
     if any("$(" in name or (single and name == file.stem) for name in names):
