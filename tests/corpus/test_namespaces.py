@@ -102,6 +102,29 @@ def test_a_spawner_may_wait_for_a_manager_outside_of_gazebo(robot):
     assert try_robot(robot(spawner=IN_ROBOT, more=node), standing=0.5).good
 
 
+@pytest.mark.parametrize(
+    ("options", "space", "reported"),
+    [
+        ("", None, True),
+        ("namespace='robot'", None, False),
+        ("namespace='robot'", "/robot", True),
+        ("condition=UnlessCondition('true')", None, False),
+        ("condition=UnlessCondition('false')", None, True),
+        # It is unknown whether it starts.
+        ("condition=IfCondition(LaunchConfiguration('real'))", None, False),
+    ],
+)
+def test_a_second_manager_of_the_same_name(robot, options, space, reported):
+    node = f"Node(package='controller_manager', executable='ros2_control_node', {options}),"
+    prefix, spawner = ("/robot/", IN_ROBOT) if space else ("", PLAIN)
+    file = robot(prefix, space, spawner, more=node)
+    found = [each.values["manager"] for each in check(file).findings]
+    name = f"{space or ''}/controller_manager"
+    assert found == [name] * reported
+    # Which of them starts the controllers is not certain.
+    assert try_robot(file, standing=0.5).good
+
+
 def test_controllers_of_a_manager_outside_of_gazebo_are_not_those_of_the_robot(robot):
     """Their parameters may be in the program of the driver."""
     node = "Node(package='controller_manager', executable='{}'{}),"

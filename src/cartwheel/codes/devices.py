@@ -345,3 +345,9 @@ CONTROLLER_PARAMETER_TYPE = Code(
     "error",
     "a parameter of ROS 2 has a value of another type, which ROS 2 does not convert",
 )
+MANAGER_STARTED_TWICE = Code(
+    "CW498",
+    "manager-started-twice",
+    "warning",
+    "a launch file starts a second controller manager with the same name",
+)

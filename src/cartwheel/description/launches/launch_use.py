@@ -91,6 +91,8 @@ class LaunchUse:
     managers: frozenset[str] = field(default=frozenset(), compare=False)
     """The namespaces in which it starts controller managers of ROS 2 outside of Gazebo; `UNKNOWN`
     is among them if one is uncertain."""
+    sure_managers: frozenset[str] = field(default=frozenset(), compare=False)
+    """Those about which no unknown condition decides."""
     places: tuple[tuple[str, Path], ...] = ()
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""

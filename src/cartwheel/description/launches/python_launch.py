@@ -131,7 +131,7 @@ class _Reader:
         """Evaluates a launch file. Actions whose use is unknown are started last."""
         self._functions = called_functions(tree)
         self._unused = unused_actions(tree, self._facts.effort)
-        self._certain = certain_functions(tree) if self._facts.strict else frozenset()
+        self._certain = certain_functions(tree)
         space = self._facts.namespace
         try:
             self.block(tree.body)

@@ -256,6 +256,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 sought_in_ros2=tuple(dict.fromkeys(facts.sought_in_ros2)),
                 programs=tuple(facts.programs),
                 managers=frozenset(facts.managers),
+                sure_managers=frozenset(one for one, sure in facts.managers.items() if sure),
                 places=tuple(dict.fromkeys(facts.places)),
                 lacking=bool(facts.required),
                 simulated=facts.simulated and number not in shown,

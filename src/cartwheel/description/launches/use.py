@@ -104,8 +104,8 @@ class Facts:
     """See `LaunchUse.sought_in_ros2`."""
     programs: dict[tuple[str, str], None] = field(default_factory=dict)
     """See `LaunchUse.programs`."""
-    managers: set[str] = field(default_factory=set)
-    """See `LaunchUse.managers`."""
+    managers: dict[str, bool] = field(default_factory=dict)
+    """See `LaunchUse.managers`, each with whether it is certainly started."""
     lost: list[Path] = field(default_factory=list)
     """Such files that do not exist."""
     unfound: list[Unfound] = field(default_factory=list)
@@ -406,7 +406,8 @@ class Facts:
             if not unsure and not any(UNKNOWN in word for word in words):
                 self.sought_in_ros2 += ((command.space, name) for name in command.started)
         if executable == "ros2_control_node":
-            self.managers.add(UNKNOWN if UNKNOWN in space else space.strip("/"))
+            outside = UNKNOWN if UNKNOWN in space else space.strip("/")
+            self.managers[outside] = self.managers.get(outside, False) or not self.doubts
         if package == "rosservice" and words[:1] == ["call"]:
             self._control(by_service(words[1:]))
 

@@ -16,11 +16,13 @@ from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.codes import files
 from cartwheel.description.elements.node import Node
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.launches import LaunchUse
 from cartwheel.description.model import Element
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
+from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_control.files import name_and_file
 from cartwheel.dialects.ros_control.interfaces import (
     MANAGERS,
@@ -32,6 +34,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     unknown_hardware,
 )
 from cartwheel.dialects.ros_control.launched.own_managers import own_managers
+from cartwheel.dialects.ros_control.launched.problems import manager_place
 from cartwheel.dialects.tag_roles import DRIVEN_ROLES
 from cartwheel.errors import Diagnostic, Origin, Value
 
@@ -74,6 +77,31 @@ def hardware_unknown(subject: Subject) -> Iterator[Diagnostic]:
             kind = tag.element.find("robotSimType")
             if kind is not None and is_unknown(kind.text):
                 yield replace(unknown_hardware(tag, kind.text), origin=kind.origin)
+
+
+@rule(devices_codes.MANAGER_STARTED_TWICE)
+def second_manager(subject: Subject) -> Iterator[Diagnostic]:
+    """A manager outside of Gazebo with the name of the robot's manager in Gazebo."""
+    use = subject.launch
+    if use is None or not use.simulated or not use.sure_managers:
+        return
+    for robot in subject.robots:
+        place = manager_place(robot.description, (use,), ros2=True)
+        if place is None or place[0] not in use.sure_managers:
+            continue
+        for tag in managers(robot, ros2=True):
+            stated = (tag.element.find(f"controller_manager{e}") for e in ("_name", "_node_name"))
+            if any(each is not None for each in stated) or without_parameters(tag) is not None:
+                continue
+            name = f"/{place[0]}/controller_manager".replace("//", "/")
+            yield devices_codes.MANAGER_STARTED_TWICE.diagnostic(
+                f'"{use.file.name}" starts ros2_control_node, but "{tag.filename}" already starts '
+                f'the controller manager "{name}" in Gazebo, so there are two of this name, and '
+                "either one may answer a spawner",
+                origin=Origin(file=shown_path(use.file)),
+                values={"manager": name, "plugin": tag.filename},
+                hint="Do not start ros2_control_node together with Gazebo.",
+            )
 
 
 def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:

@@ -185,7 +185,7 @@ def of_other_managers(
     """The controllers that a launch file starts only with managers outside of Gazebo, such as that
     of the driver of a real robot, whose namespace is another one.
     """
-    place = _manager_place(robot, launches, ros2=True) if starter and starter.managers else None
+    place = manager_place(robot, launches, ros2=True) if starter and starter.managers else None
     if starter is None or place is None:
         return frozenset()
     spaces: dict[str, set[str]] = {}
@@ -203,7 +203,7 @@ def _unmanaged(
     ros2: bool = False,
 ) -> Iterator[Diagnostic]:
     """Controllers whose spawner waits for a controller manager in a namespace that has none."""
-    place = _manager_place(robot, launches, ros2=ros2)
+    place = manager_place(robot, launches, ros2=ros2)
     if place is None:
         return
     manager, why = place
@@ -243,7 +243,7 @@ def _unmanaged(
         )
 
 
-def _manager_place(
+def manager_place(
     robot: RobotDescription, launches: Sequence[LaunchUse], *, ros2: bool
 ) -> tuple[str, str] | None:
     """The namespace of the controller manager in Gazebo, without the first slash, and why it is
