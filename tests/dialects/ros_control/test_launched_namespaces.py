@@ -89,7 +89,9 @@ def test_controllers_whose_parameters_are_or_may_be_in_the_same_namespace_start(
     verdict = try_robot(arm(content, *elements), standing=1.0)
     assert misplaced(verdict) == []
     assert verdict.controllers == ("move",)
-    assert verdict.good, verdict.faults
+    # ROS does not start a launch file with a file that does not exist.
+    lost = any("no.yaml" in each for each in elements)
+    assert [each.test for each in verdict.faults] == ["load"] * lost
 
 
 @pytest.mark.parametrize(

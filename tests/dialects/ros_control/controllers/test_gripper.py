@@ -25,7 +25,9 @@ BODY = """<link name="palm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" 
   </collision></link><joint name="finger_joint" type="prismatic"><parent link="palm"/>
   <child link="finger"/><axis xyz="1 0 0"/><limit lower="0" upper="0.3" effort="50" velocity="1"/>
   </joint>"""
-STOP = """<link name="stop"><collision><origin xyz="0.15 0 0"/><geometry><box size="0.02 0.1 0.1"/>
+STOP = """<link name="stop"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"
+  ixy="0" ixz="0" iyz="0"/></inertial><collision>
+  <origin xyz="0.15 0 0"/><geometry><box size="0.02 0.1 0.1"/>
   </geometry></collision></link><joint name="post" type="fixed"><parent link="world"/>
   <child link="stop"/><origin xyz="0 0 1"/></joint>"""
 """Its face is at 0.14 m, which a finger of 0.02 m reaches at 0.13 m."""
