@@ -145,6 +145,12 @@ LAUNCH_STOPS = Code(
     "error",
     "the launch file that starts the robot needs a file that does not exist",
 )
+PACKAGE_WITHOUT_MANIFEST = Code(
+    "CW171",
+    "package-without-manifest",
+    "warning",
+    "a folder without a package.xml is used as the package with a name",
+)
 PACKAGE_URI_IN_SDF = Code(
     "CW168",
     "package-uri-in-sdf",

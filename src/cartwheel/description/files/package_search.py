@@ -11,6 +11,7 @@ from pathlib import Path
 from cartwheel.description.elements import numbers
 from cartwheel.description.files import fuel
 from cartwheel.description.files.missing_packages import Advice, how_to_install
+from cartwheel.description.files.nameless_packages import nameless_packages
 from cartwheel.description.files.package_folders import (
     PackagesByName,
     around,
@@ -62,6 +63,9 @@ class PackageSearch:
         self._packages: dict[str, Path | None] = {}
         self.neighbours: dict[str, Path] = {}
         """Packages that were found in another repository near the file, by name."""
+        self.nameless: dict[str, Path] = {}
+        """Folders without a package.xml that were found instead of packages, by the names of these.
+        """
         self._searched: Searched = {} if searched is None else searched
         self._package_advice: dict[str, Advice] = {}
         self._model_advice: dict[str, Advice] = {}
@@ -165,6 +169,8 @@ class PackageSearch:
         )
         for index, roots in enumerate(searches):
             if index == 1 and (own := self._own_folder(name)) is not None:
+                if package_name(own) is None:
+                    self.nameless[name] = own
                 return own
             for root in roots():
                 found = self._in(root).first(name)
@@ -176,12 +182,23 @@ class PackageSearch:
                 return self._own(name, found)
         # A folder with the right name but without package.xml may be a description copied out of
         # its workspace: second choice, but better than failing.
-        for roots in searches:
+        for index, roots in enumerate(searches):
             for root in roots():
                 for bare in (root, root / name):
                     if bare.name == name and is_dir(bare):
+                        if index == 1:
+                            self.nameless[name] = bare
                         return bare
-        return self._in(stand_ins()).first(name)
+        stand_in = self._in(stand_ins()).first(name)
+        if stand_in is None and (own := self._own_names.get(name)) is not None:
+            self.nameless[name] = own
+            return own
+        return stand_in
+
+    @cached_property
+    def _own_names(self) -> dict[str, Path]:
+        """The folders with the file that are meant by the names of packages."""
+        return {} if self.file is None else nameless_packages(self.file)
 
     def _in(self, root: Path, *, crawled: bool = False) -> PackagesByName:
         """The packages of the workspace at `root`, or all below it if it is crawled."""

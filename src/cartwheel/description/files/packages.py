@@ -19,6 +19,7 @@ from cartwheel.description.files import fuel
 from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.files.missing_files import advice_about, missing
 from cartwheel.description.files.missing_packages import how_to_install
+from cartwheel.description.files.nameless_packages import about_packages
 from cartwheel.description.files.other_places import FIND, Moved, Use, other_places, report
 from cartwheel.description.files.package_folders import (
     around,
@@ -78,8 +79,8 @@ class Packages:
         """The answers of `resolve`, by the URI, the file that contains it, and `folder`."""
         self.stand_ins: dict[str, Origin | None] = {}
         """The packages whose stand-ins were read, with the first element that refers to each."""
-        self._neighbours: dict[str, Origin | None] = {}
-        """The first elements that refer to packages of other repositories."""
+        self._needed: dict[str, Origin | None] = {}
+        """The first elements that refer to packages, by the names of these."""
         self.found_elsewhere: dict[str, Moved] = {}
         """Files that are not where the description says, by the statement."""
 
@@ -94,15 +95,15 @@ class Packages:
         Raises:
             DescriptionError: The package was not found; the hint lists the searched folders.
         """
-        if (found := self.found(name)) is None:
+        if (found := self.found(name, origin)) is None:
             text, advice = f'the package "{name}" was not found', self._search.package_advice(name)
             raise missing("package", name, text, origin, advice)
-        if name in self._search.neighbours:
-            self._neighbours.setdefault(name, origin)
         return found
 
-    def found(self, name: str) -> Path | None:
+    def found(self, name: str, origin: Origin | None = None) -> Path | None:
         """As `find`, without an error."""
+        if self._needed.get(name) is None:
+            self._needed[name] = origin
         return self._search.package(name)
 
     def how_to_install(self, name: str) -> str:
@@ -237,16 +238,9 @@ class Packages:
 
     def moves(self) -> Iterator[Diagnostic]:
         """Reports the files that are not where the description says, and the packages that are in
-        another repository.
+        another repository or have no package.xml.
         """
-        for name, folder in self._search.neighbours.items():
-            yield codes.PACKAGE_OF_NEIGHBOUR.diagnostic(
-                f'the package "{name}" is not in the repository of the robot, so "{folder}" is '
-                "used",
-                origin=self._neighbours.get(name),
-                hint="To use another one, add its folder to the package path.",
-                values={"name": name, "used": str(folder)},
-            )
+        yield from about_packages(self._search.neighbours, self._search.nameless, self._needed)
         yield from (report(uri, moved) for uri, moved in self.found_elsewhere.items())
 
     def model_folders(self) -> list[Path]:
