@@ -44,11 +44,19 @@ def held_parts(joints: Sequence[Joint]) -> dict[str, list[str]]:
     Args:
         joints: The joints of a URDF.
     """
-    bases = [each.child for each in joints if each.type == "fixed" and each.parent == "world"]
-    merged = [each for each in joints if each.type == "fixed" and not each.preserve_fixed]
-    found = {base: carried(merged, [base]) for base in bases}
-    order = [*bases, *(each.child for each in joints)]
-    return {base: [name for name in dict.fromkeys(order) if name in found[base]] for base in bases}
+    fixed = [each for each in joints if each.type == "fixed"]
+    below: dict[str, list[str]] = {}
+    for joint in fixed:
+        if not joint.preserve_fixed:
+            below.setdefault(joint.parent, []).append(joint.child)
+    found = {joint.child: [joint.child] for joint in fixed if joint.parent == "world"}
+    seen = set(found)
+    for part in found.values():
+        for name in part:
+            more = [each for each in below.get(name, ()) if each not in seen]
+            seen.update(more)
+            part.extend(more)
+    return found
 
 
 def link_poses(description: RobotDescription, positions: Mapping[str, float]) -> dict[str, Pose]:

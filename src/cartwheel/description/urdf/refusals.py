@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import islice
 
 from cartwheel.codes import robot, tags
@@ -41,7 +41,10 @@ def refusals(root: Node) -> Iterator[Diagnostic]:
     """
     yield from _version(root)
     yield from _nameless_materials(root)
-    links = {name for node in _all(root, "link") if (name := node.attributes.get("name"))}
+    links: dict[str, str] = {}
+    for node in _all(root, "link"):
+        if name := node.attributes.get("name"):
+            links.setdefault(name.strip(), name)
     for joint in _all(root, "joint"):
         yield from _joint(joint, links)
 
@@ -69,7 +72,7 @@ def _nameless_materials(root: Node) -> Iterator[Diagnostic]:
         )
 
 
-def _joint(joint: Node, links: set[str]) -> Iterator[Diagnostic]:
+def _joint(joint: Node, links: Mapping[str, str]) -> Iterator[Diagnostic]:
     name = joint.attributes.get("name", "").strip()
     kind = joint.attributes.get("type", "")
     if kind != kind.strip():
@@ -77,8 +80,8 @@ def _joint(joint: Node, links: set[str]) -> Iterator[Diagnostic]:
     for tag in ("parent", "child"):
         end = _first(joint, tag)
         link = end.attributes.get("link", "") if end is not None else ""
-        stated = next((each for each in links if each.strip() == link.strip()), link)
-        if end is not None and link not in links and stated != link:
+        stated = links.get(link.strip(), link)
+        if end is not None and stated != link:
             yield _invalid(end, "link", link, f'is not the name of the link "{stated}"', stated)
     limit = _first(joint, "limit")
     for what in ("effort", "velocity"):

@@ -65,6 +65,7 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         if robot.description.static:
             continue
+        bases = held_parts(robot.description.joints)
         for root, parts in robot.rigid_groups.items():
             # An SDF link without an <inertial> has a mass of 1 kg.
             group = [name for name in parts if name not in robot.in_sdf]
@@ -72,11 +73,12 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             holder = robot.inbound.get(root)
             held = holder is not None and holder.type == "fixed"
+            if held and root not in bases:
+                continue
             if held:
                 # Gazebo merges no link into the world.
-                group = [
-                    each for each in group if each in held_parts(robot.description.joints)[root]
-                ]
+                merged = frozenset(bases[root])
+                group = [name for name in group if name in merged]
             if any(is_stated(robot.links[name]) for name in group):
                 continue
             shaped = next((name for name in group if robot.solids(name)), None)
