@@ -51,3 +51,21 @@ def test_of_two_descriptions_the_one_that_is_spawned_is_chosen(arm, topic, simul
     use = chosen(arm / "arm.urdf.xacro", found)
     assert use is not None
     assert use.arguments == {"sim": sim}
+
+
+def test_other_robots_of_the_launch_file_are_those_that_are_spawned(arm):
+    """An argument is in the name of the file, of which there is one for each robot."""
+    for name in ("small", "large"):
+        text = f'<robot name="{name}"><link name="base"/></robot>'
+        (arm / f"arm_{name}.urdf.xacro").write_text(text)
+    text = LAUNCH.format(topic="robot_description")
+    name = "LaunchConfiguration('model')"
+    parts = f"'xacro ', get_package_share_directory('arm'), '/arm_', {name}, '.urdf.xacro"
+    declared = "DeclareLaunchArgument('model', default_value='small'),"
+    text = text.replace("'xacro ', FILE, '", parts).replace("([\n", f"([\n        {declared}\n", 1)
+    (arm / "launch/sim.launch.py").write_text(text)
+    found = launches_near(arm)
+    for robot in ("small", "large"):
+        use = chosen(arm / f"arm_{robot}.urdf.xacro", found)
+        assert use is not None
+        assert (use.arguments, use.simulated) == ({"sim": "true"}, True)

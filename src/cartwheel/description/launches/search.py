@@ -117,13 +117,9 @@ def _uses(path: Path, packages: Packages, effort: Effort) -> Iterator[LaunchUse]
             if description not in known
         ]
         known |= {description for description, _ in other.descriptions}
-        other.plain = {
-            place: other.plain[number] for place, number in enumerate(new) if number in other.plain
-        }
-        other.raw = {place for place, number in enumerate(new) if number in other.raw}
-        other.descriptions = [other.descriptions[number] for number in new]
         if new:
-            yield from needed(uses_of(path, other, given.values()), given)
+            found = uses_of(path, other, given.values())
+            yield from needed([found[number] for number in new], given)
     if facts.leaves_out:
         yield from _switched(path, packages, facts, effort)
 
@@ -232,7 +228,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
         described.append((None, {}))
     found = []
     spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))
-    shown = set[int]() if words else _only_shown(facts)
+    shown = _only_shown(facts)
     worlds = tuple(map(facts.found_world, dict.fromkeys(facts.gazebos.worlds)))
     for number, (description, arguments) in enumerate(described):
         known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
