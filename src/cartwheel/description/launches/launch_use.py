@@ -93,6 +93,10 @@ class LaunchUse:
     is among them if one is uncertain."""
     sure_managers: frozenset[str] = field(default=frozenset(), compare=False)
     """Those about which no unknown condition decides."""
+    alone: bool = False
+    """Whether it spawns a model, names no other description, starts no program that may be a
+    controller manager by its name, and includes no launch file that was not found, apart from those
+    of Gazebo."""
     places: tuple[tuple[str, Path], ...] = ()
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""

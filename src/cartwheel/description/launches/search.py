@@ -229,6 +229,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
     found = []
     spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))
     shown = _only_shown(facts)
+    alone = facts.spawning and not facts.partial and len({file for file, _ in described}) == 1
     worlds = tuple(map(facts.found_world, dict.fromkeys(facts.gazebos.worlds)))
     for number, (description, arguments) in enumerate(described):
         known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
@@ -253,6 +254,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 programs=tuple(facts.programs),
                 managers=frozenset(facts.managers),
                 sure_managers=frozenset(one for one, sure in facts.managers.items() if sure),
+                alone=alone,
                 places=tuple(dict.fromkeys(facts.places)),
                 lacking=bool(facts.required),
                 simulated=facts.simulated and number not in shown,

@@ -124,6 +124,11 @@ def spawn_of(executable: str, words: Sequence[str], space: str) -> Spawn:
     )
 
 
+def spawns(words: Sequence[str]) -> bool:
+    """Whether these are arguments of a spawner, by the options of the model's source and name."""
+    return not _SOURCES.isdisjoint(words) and not _NAMES.isdisjoint(words)
+
+
 def _parts(executable: str, word: str) -> Sequence[str]:
     """An argument of a spawner, with its value if the same word contains it."""
     if executable == _OF_GZ and word.startswith("--") and word != "--ros-args":

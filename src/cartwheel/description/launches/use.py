@@ -33,6 +33,7 @@ from cartwheel.description.launches.spawning import (
     Spawn,
     resolved,
     spawn_of,
+    spawns,
     split,
     world_in,
 )
@@ -63,6 +64,8 @@ _STARTERS: Mapping[tuple[str, str], tuple[str, ...]] = {
 _PRINTING = frozenset({"xacro", "xacro.py", "cat"})
 """Commands that fail if their file does not exist."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
+_HARDWARE = re.compile(r"control_node|ros2?_control|hardware|driver|(?<![a-z])hw(?![a-z])")
+"""Parts of the names of programs that may run a controller manager outside of Gazebo."""
 
 
 @dataclass(kw_only=True)
@@ -106,6 +109,12 @@ class Facts:
     """See `LaunchUse.programs`."""
     managers: dict[str, bool] = field(default_factory=dict)
     """See `LaunchUse.managers`, each with whether it is certainly started."""
+    spawning: bool = False
+    """Whether a node spawns a model, also one of another package with the arguments of gazebo_ros's
+    spawner."""
+    partial: bool = False
+    """Whether it includes launch files that were not found, apart from those of Gazebo, or starts a
+    program that may be a controller manager by its name."""
     lost: list[Path] = field(default_factory=list)
     """Such files that do not exist."""
     unfound: list[Unfound] = field(default_factory=list)
@@ -207,6 +216,9 @@ class Facts:
             self.absent[f'package "{name.strip()}"'] = None
         if folder is not None:
             self.folders.add(folder)
+        elif name.strip() in _GAZEBO:
+            # Its launch files often have the same names as those of the robot's package.
+            return f"{UNKNOWN}/{name.strip()}"
         folder = folder or (None if self.strict else self.home)
         return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
 
@@ -408,6 +420,8 @@ class Facts:
         if executable == "ros2_control_node":
             outside = UNKNOWN if UNKNOWN in space else space.strip("/")
             self.managers[outside] = self.managers.get(outside, False) or not self.doubts
+        self.partial |= _HARDWARE.search(executable) is not None
+        self.spawning |= spawns(words) or (package in _GAZEBO and executable in MODEL_SPAWNERS)
         if package == "rosservice" and words[:1] == ["call"]:
             self._control(by_service(words[1:]))
 
@@ -540,6 +554,7 @@ class Facts:
         absent = any(each.startswith("package ") for each in self.absent)
         is_sure = "gazebo_ros" in path.parts or (not absent and UNKNOWN not in text)
         self.gazebos.add_launch_file(path.name, arguments, is_own=is_own, is_sure=is_sure)
+        self.partial |= not is_own and _GAZEBO.isdisjoint(path.parts)
         if is_own:
             self.effort.spend(len(inherited))
             given = {**inherited, **arguments}

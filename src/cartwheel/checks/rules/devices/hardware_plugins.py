@@ -18,8 +18,8 @@ from cartwheel.codes import files
 from cartwheel.description.elements.node import Node
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.ros_version import ros_version
-from cartwheel.description.launches import LaunchUse
-from cartwheel.description.model import Element
+from cartwheel.description.launches import LaunchUse, moves
+from cartwheel.description.model import Element, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
@@ -42,6 +42,8 @@ _STATES = "joint_state"
 """Part of the names of controllers that only publish."""
 _SHOWN = 3
 """Maximum number of joints that a message lists."""
+_MOST_LAUNCHES = 50
+"""Maximum number of launch files that are considered."""
 _ABSENT = (files.INCLUDE_ABSENT, files.MACRO_ABSENT)
 """Parts that may contain the plugin."""
 CONDITIONS = ("xacro:if", "xacro:unless")
@@ -53,7 +55,11 @@ def hardware_without_plugin(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         description = robot.description
         yield from _unloaded(subject, robot)
-        yield from _without_manager(subject, robot)
+        for use in _uses(subject):
+            found = [*_without_manager(subject, robot, use)]
+            yield from found
+            if found:
+                break
         if any("control" in short_name(tag.filename) for tag in description.plugins):
             continue  # perhaps a controller manager under another name
         for system in description.ros2_control:
@@ -104,12 +110,27 @@ def second_manager(subject: Subject) -> Iterator[Diagnostic]:
             )
 
 
-def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
+def _uses(subject: Subject) -> list[LaunchUse]:
+    """The launch files that start the description, first the one whose arguments are used."""
+    first, file = subject.launch, Path(subject.files[0]).resolve()
+    others = (
+        each
+        for each in subject.own_launches.launches
+        if each.description is not None
+        and each.description.resolve() == file
+        and each.alone
+        and _starts(each, subject)
+    )
+    found = ([first] if first is not None else []) + [each for each in others if each is not first]
+    return list({each.file: each for each in reversed(found)}.values())[::-1][:_MOST_LAUNCHES]
+
+
+def _without_manager(subject: Subject, robot: Robot, use: LaunchUse) -> Iterator[Diagnostic]:
     """As `_unmanaged`. It is a note if the launch file starts a program of the repository that has
     a controller manager of its own: what it moves is unknown.
     """
-    for found in _unmanaged(subject, robot):
-        programs = own_managers(subject.launch)
+    for found in _unmanaged(subject, robot, use):
+        programs = own_managers(use)
         if not programs:
             yield found
             continue
@@ -123,15 +144,14 @@ def _without_manager(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
         )
 
 
-def _unmanaged(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
+def _unmanaged(subject: Subject, robot: Robot, use: LaunchUse) -> Iterator[Diagnostic]:
     """Controllers that a launch file starts for a robot in Gazebo, although no plugin runs them.
 
     Hardware of ``<ros2_control>`` for Gazebo is left out, which is reported otherwise.
     """
-    description, use = robot.description, subject.launch
+    description = robot.description
     if (
-        use is None
-        or not use.simulated
+        not use.simulated
         or all(_STATES in name for name in use.spawned)
         or any("control" in short_name(tag.filename) for tag in description.plugins)
         or managers(robot, ros2=True)
@@ -149,7 +169,8 @@ def _unmanaged(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
     values: dict[str, Value] = {"name": first, "spawned": True}
     if description.ros2_control:
         # An argument that is unknown, or that the user states, may select a plugin.
-        systems = _listing(description.ros2_control, movable) if is_started(subject) else []
+        started = _starts(use, subject)
+        systems = _listing(description.ros2_control, movable) if started else []
         hardware = hardware_of(systems[0]) if systems else ""
         if not hardware or hardware in MANAGERS:
             return
@@ -164,7 +185,7 @@ def _unmanaged(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
         )
         return
     listed = _listing(description.transmissions, movable)
-    is_ros2 = ros_version(Path(description.origin.file)) == 2
+    is_ros2 = (ros_version(Path(description.origin.file)) or 1 + (use.file.suffix == ".py")) == 2
     if listed and not is_ros2:
         file = f"lib{ROS_CONTROL}.so"
         yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
@@ -174,18 +195,31 @@ def _unmanaged(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
             values={"hardware": "transmission", "plugin": file, **values},
             hint=f'Add <gazebo><plugin filename="{file}" name="…"/></gazebo>.',
         )
-    elif lost and is_started(subject):
+    elif _starts(use, subject) and (lost or _is_alone(description, use)):
         tag, files = "<transmission>", [f"lib{ROS_CONTROL}.so"]
         if is_ros2:
             tag, files = "<ros2_control>", list(MANAGERS.values())
         usable = (f'<plugin filename="{file}" name="…">' for file in files)
+        moved = f"starts and nothing moves {_named(lost)}" if lost else "starts"
         yield devices_codes.HARDWARE_WITHOUT_PLUGIN.diagnostic(
             f"{starts} contains neither a plugin that runs them nor a {tag}, so no controller "
-            f"starts and nothing moves {_named(lost)}",
-            origin=robot.joints[lost[0]].origin,
+            f"{moved}",
+            origin=robot.joints[lost[0]].origin if lost else description.origin,
             values={"hardware": "", "plugin": files[0], "joints": tuple(lost), **values},
             hint=f"Add a {tag} with the joints, and {' or '.join(usable)} in a <gazebo>.",
         )
+
+
+def _is_alone(description: RobotDescription, use: LaunchUse) -> bool:
+    """Whether the controllers that a launch file starts, of which no joint is known, have no
+    manager: only the robot itself could contain it, and all of its plugins are known.
+    """
+    return (
+        use.alone
+        and any(map(moves, use.spawned))
+        and any(joint.type != "fixed" for joint in description.joints)
+        and all(map(plugin_tags.is_simulated, description.plugins))
+    )
 
 
 def _lost_joints(robot: Robot, use: LaunchUse) -> list[str]:
@@ -269,8 +303,12 @@ def _systems(robot: Robot) -> str:
 
 def is_started(subject: Subject) -> bool:
     """Whether a launch file certainly starts Gazebo with the arguments of the xacro."""
-    use = subject.launch
-    if use is None or not use.simulated or use.unknown:
+    return subject.launch is not None and _starts(subject.launch, subject)
+
+
+def _starts(use: LaunchUse, subject: Subject) -> bool:
+    """The same for one launch file."""
+    if not use.simulated or use.unknown:
         return False
     stated = subject.arguments
     return all(stated.get(name, value) == value for name, value in use.arguments.items())
