@@ -210,6 +210,10 @@ def exported(folder, hardware, base):
         ("mock_components/GenericSystem", CLASSIC, False),
         ("own_arm_gazebo/ArmSystem", CLASSIC, True),
         ("simple_arm/ArmSystem", CLASSIC, False),
+        ("gabebo_ros2_control/GazeboSystem", CLASSIC, False),
+        ("gz_ros2_contol::GazeboSimSystem", GZ, False),
+        ("my_gazebo_ros2_control/GazeboSystem", CLASSIC, True),
+        ("igus_ros2_control/ArmSimSystem", GZ, True),
     ],
 )
 def test_gazebo_loads_only_hardware_for_its_own_plugin(tmp_path, hardware, gazebo, loaded):
@@ -218,6 +222,14 @@ def test_gazebo_loads_only_hardware_for_its_own_plugin(tmp_path, hardware, gazeb
     found = unloaded(path)
     assert [each.values["hardware"] for each in found] == [hardware] * (not loaded)
     assert all(each.severity == "warning" for each in found)
+
+
+def test_a_misspelt_package_means_that_of_the_plugin(tmp_path):
+    path = tmp_path / "arm.urdf"
+    path.write_text(managed("gabebo_ros2_control/GazeboSystem"))
+    assert [each.values["meant"] for each in unloaded(path)] == [SYSTEM[CLASSIC]]
+    exported(tmp_path, "gabebo_ros2_control/GazeboSystem", "")
+    assert not unloaded(path)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.plugin_xml import base_classes
 from cartwheel.description.model import Element, PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -19,10 +20,13 @@ from cartwheel.dialects.ros_control.interfaces import (
     loaded_by,
     package_system,
 )
+from cartwheel.similar_names import meant_one
 
 _MANAGER = re.compile(r"(gazebo|gz|ign)_ros2_control")
 _DERIVED = re.compile(r"gazebo|ignition|(?<![a-z])gz", re.IGNORECASE)
 """Names of the interfaces from which hardware for Gazebo is derived."""
+_MISSPELT = 0.88
+"""Similarity from which a package is probably a misspelt one."""
 _FOR_SIMULATION = re.compile(
     r"gazebo|(?<![a-z])(?:gz|ign)(?![a-z])|ignition|sim(?!pl)", re.IGNORECASE
 )
@@ -56,13 +60,32 @@ def unloaded_systems(robot: RobotDescription) -> list[tuple[Element, PluginTag]]
         and _is_named(hardware_of(system))
     ]
     foreign = {hardware_of(system) for system in left if not _is_simulated(hardware_of(system))}
-    bases = base_classes(Path(robot.origin.file), foreign)
+    file = Path(robot.origin.file)
+    bases = base_classes(file, foreign)
     return [
         (system, manager)
         for system in left
         if hardware_of(system) not in foreign
         or not _may_be_loaded(hardware_of(system), bases.get(hardware_of(system), ""))
+        or (hardware_of(system) not in bases and misspelt(hardware_of(system), file))
     ]
+
+
+def misspelt(hardware: str, robot: Path) -> str:
+    """The hardware for Gazebo whose package is meant by a misspelt name; empty if there is none.
+
+    Args:
+        hardware: The class, such as ``gazbo_ros2_control/GazeboSystem``.
+        robot: The file of the robot. The name is right if a package near it has this name.
+    """
+    package, _, name = hardware.replace("::", "/").partition("/")
+    own = {each.partition("/")[0]: each for each in SYSTEMS}
+    near = meant_one(package, own, cutoff=_MISSPELT)
+    classes = (each.partition("/")[2] for each in SYSTEMS)
+    if not near or not meant_one(name, classes, cutoff=_MISSPELT) or any(e in package for e in own):
+        # Another package may have a name that contains the known one.
+        return ""
+    return "" if Packages(robot).found(package) is not None else own[near]
 
 
 def _may_manage(tag: PluginTag) -> bool:

@@ -21,7 +21,7 @@ from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.launches import LaunchUse, moves
 from cartwheel.description.model import Element, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
-from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
+from cartwheel.dialects.ros2_control.unloaded import misspelt, unloaded_systems
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_control.files import name_and_file
 from cartwheel.dialects.ros_control.interfaces import (
@@ -269,12 +269,15 @@ def _unloaded(subject: Subject, robot: Robot) -> Iterator[Diagnostic]:
         hardware, name = hardware_of(system), system.attribute("name") or ""
         element = system.find("hardware/plugin") or system
         chosen = choices.concern(element.origin) and not is_started(subject)
-        own = package_system(hardware)
+        near = misspelt(hardware, Path(robot.description.origin.file))
+        own = near or package_system(hardware)
         meant = own if own in loaded_by(robot.description) else ""
         why = f'"{manager.filename}" does not load it'
         if own and hardware != own:
             package = hardware.replace("::", "/").partition("/")[0]
             why = f'the package "{package}" does not contain it'
+        if near:
+            why = f'there is no package "{package}"'
         hint = f"In Gazebo, use {_systems(robot)}."
         if chosen:
             hint = "If an argument selects the hardware for Gazebo, pass it."
