@@ -19,6 +19,7 @@ from cartwheel.corpus.movers import (
     named_movers,
 )
 from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.launches import moves as may_move
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.gz.gazebo_only import not_loaded
@@ -41,12 +42,10 @@ _CONTROL = frozenset(
     }
 )
 """Reasons why no controller runs."""
-_STATES = "joint_state"
-"""Part of the names of controllers that only publish."""
 _BROADCASTER = "Broadcaster"
 """End of the types of ROS 2's controllers that command nothing."""
 _ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
-"""Causes for which a controller does not start in ROS either, although another one works."""
+"""Causes for which a controller does not start in ROS either, although another works."""
 
 
 def unmanaged_hardware(
@@ -102,14 +101,15 @@ def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterato
 
 
 def refused_controllers(verdict: Verdict) -> dict[str, Fault]:
-    """Controllers that ROS 2 does not start because of the type of a parameter, by name.
-
-    Cartwheel converts the parameter and starts them.
+    """Controllers that ROS 2 does not start although others may run, by name: because of the type
+    of a parameter, which Cartwheel converts, or because their own type is not stated.
     """
     found: dict[str, Fault] = {}
-    for each in verdict.diagnostics:
+    for each in (*verdict.diagnostics, *verdict.observed):
         name = str(each.values.get("controller", ""))
-        if each.code is devices.CONTROLLER_PARAMETER_TYPE and name and is_started(name, verdict):
+        untyped = each.values.get("untyped") is True and may_move(name)
+        mistyped = each.code is devices.CONTROLLER_PARAMETER_TYPE and is_started(name, verdict)
+        if name and (untyped or mistyped):
             found.setdefault(name, Fault(test="controller", subject=name, reason=each))
     return found
 

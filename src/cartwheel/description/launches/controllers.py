@@ -16,6 +16,7 @@ _MANAGERS = frozenset({"-c", "--controller-manager"})
 _MANAGER_SPACES = frozenset({"-n", "--namespace"})
 """Options of spawners that state the controller manager, or its namespace."""
 _FILES = frozenset({"-p", "--param-file"})
+_TYPES = frozenset({"-t", "--controller-type"})
 _ROS_ARGUMENTS = "--controller-ros-args"
 """Option of spawners with arguments of the controllers' nodes, which can be stated repeatedly."""
 _INACTIVE = frozenset({"--inactive", "--stopped", "--load-only"})
@@ -72,6 +73,8 @@ class ControllerCommand:
     """ROS arguments of their nodes, such as ``-r from:=to``."""
     unsure: bool = False
     """Whether it starts or loads further controllers whose names are unknown."""
+    typed: bool = False
+    """Whether it states the type of its controllers, or a file that is unknown may do so."""
 
 
 def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
@@ -106,6 +109,7 @@ def by_spawner(words: Iterable[str], space: str) -> ControllerCommand:
         loaded=() if starts else known,
         files=tuple(files),
         arguments=tuple(arguments),
+        typed=not _TYPES.isdisjoint(words) or any(UNKNOWN in each for each in files),
         # ROS 1's spawner also takes files, and starts the controllers that they name.
         unsure=any(UNKNOWN in name or name.endswith((".yaml", ".yml")) for name in names),
     )

@@ -70,6 +70,8 @@ class LaunchUse:
     """Those of them for which it may be a mistake: it does not state that they are inactive."""
     unsure: bool = False
     """Whether it starts or loads further controllers whose names are unknown."""
+    typed: frozenset[str] = field(default=frozenset(), compare=False)
+    """Names of controllers whose type it states itself, or in a file that is unknown."""
     node_arguments: tuple[tuple[str, tuple[str, ...]], ...] = ()
     """Names of controllers whose nodes it gives ROS arguments, such as ``-r from:=to``, with these.
     """

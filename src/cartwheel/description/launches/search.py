@@ -246,6 +246,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 loaded=only_loaded((name for _, name in facts.loaded), spawned),
                 undecided=frozenset(facts.undecided),
                 unsure=facts.unsure,
+                typed=frozenset(facts.typed),
                 node_arguments=tuple(dict.fromkeys(each for _, each in facts.arguments)),
                 absent=tuple(facts.lost),
                 unfound=tuple(facts.unfound),

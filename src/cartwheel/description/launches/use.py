@@ -129,6 +129,8 @@ class Facts:
     """Those of them whose command does not state that it does not start them."""
     unsure: bool = False
     """See `LaunchUse.unsure`."""
+    typed: set[str] = field(default_factory=set)
+    """See `LaunchUse.typed`."""
     simulated: bool = False
     spawns: list[Spawn] = field(default_factory=list)
     world: str = ""
@@ -464,6 +466,7 @@ class Facts:
             self.loaded += ((command.space, name) for name in command.loaded)
             self.undecided |= set(() if command.decided else command.loaded)
             self.unsure |= command.unsure
+            self.typed |= set(command.started if command.typed else ())
             if command.arguments:
                 for name in (*command.started, *command.loaded):
                     self.arguments.append((command.space, (name, command.arguments)))

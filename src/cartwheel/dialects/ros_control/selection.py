@@ -34,11 +34,11 @@ from cartwheel.dialects.ros_control.launched.problems import (
     misplaced_names,
     of_other_managers,
     only_loaded,
-    undefined,
     unfound,
     unmanaged_in_ros2,
     unreadable,
 )
+from cartwheel.dialects.ros_control.launched.untyped import unloadable
 from cartwheel.dialects.ros_control.suggestion import (
     commanding,
     is_controlled,
@@ -106,7 +106,7 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     # The user need not start this launch file, and here, the controllers work.
     found = selection(robot, use, launches, tolerant=True) if lacks_controllers(robot) else None
     if found is None or not found.files:
-        problems = (*unfound(starter), *undefined(robot, starter), *only_loaded(starter))
+        problems = (*unfound(starter), *unloadable(robot, starter), *only_loaded(starter))
         idle = () if starter is None else as_named(starter.loaded, ())
         arguments = () if starter is None else starter.node_arguments
         known = starter is not None and not starter.unsure and any(map(moves, starter.spawned))
@@ -181,7 +181,7 @@ def selection(
         names = tuple(name for name in names if name not in others)
     names = named_in(names, files, robot)
     lost = unreadable(starter.controllers, names) if starter is not None else ()
-    reported = undefined(robot, starting, within) if is_controlled(robot) else ()
+    reported = unloadable(robot, starting, within) if is_controlled(robot) else ()
     idle = () if starting is None else named_in(starting.loaded, files, robot)
     elsewhere = misplaced if is_of_ros1(robot) else unmanaged_in_ros2
     apart = tuple(elsewhere(robot, starting, launches)) if is_controlled(robot) else ()
