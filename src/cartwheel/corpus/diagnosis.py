@@ -11,6 +11,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.codes import devices, files, robot, running, tags, world
+from cartwheel.corpus.causes.controllers import (
+    is_started,
+    is_unmanaged,
+    refused_controllers,
+    stopped_managers,
+    unmanaged_controllers,
+    unmanaged_hardware,
+)
 from cartwheel.corpus.causes.drives import (
     cause_of_drive,
     explains_turn,
@@ -28,16 +36,7 @@ from cartwheel.corpus.causes.falls import (
 from cartwheel.corpus.causes.inertias import flywheel, sluggish
 from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, is_lost_model, most_severe
-from cartwheel.corpus.missing_movers import (
-    held_bases,
-    is_started,
-    is_unmanaged,
-    missing_movers,
-    refused_controllers,
-    stopped_managers,
-    unmanaged_controllers,
-    unmanaged_hardware,
-)
+from cartwheel.corpus.missing_movers import held_bases, missing_movers
 from cartwheel.corpus.movers import LEFT_OUT, dropped_joints, moves_nothing
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.package_folders import package_above

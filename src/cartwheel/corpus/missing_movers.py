@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator, Sequence
 from cartwheel.checks.controller_claims import uncommanded
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices, files, robot, running
+from cartwheel.corpus.causes.controllers import is_misplaced, is_started
 from cartwheel.corpus.causes.falls import is_body_lost
 from cartwheel.corpus.faults import Fault, coded, most_severe
 from cartwheel.corpus.movers import (
-    LEFT_OUT,
     ignored_movers,
     is_known,
     is_own_mover,
@@ -19,11 +19,9 @@ from cartwheel.corpus.movers import (
     named_movers,
 )
 from cartwheel.corpus.verdict import Verdict
-from cartwheel.description.launches import moves as may_move
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.gz.gazebo_only import not_loaded
-from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
 from cartwheel.dialects.ros2_control.unstarted import without_parameters
 from cartwheel.dialects.ros_only import other_tags
 from cartwheel.dialects.world_plugins import refused
@@ -46,72 +44,6 @@ _BROADCASTER = "Broadcaster"
 """End of the types of ROS 2's controllers that command nothing."""
 _ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
 """Causes for which a controller does not start in ROS either, although another works."""
-
-
-def unmanaged_hardware(
-    verdict: Verdict,
-    description: RobotDescription,
-    findings: Callable[[], Sequence[Diagnostic]],
-) -> Iterator[tuple[str, Fault]]:
-    """Hardware of a robot that no plugin runs in Gazebo, by name: that for Gazebo, if nothing else
-    moves the robot, and that which the robot's plugin does not load.
-    """
-    if not description.ros2_control or (verdict.movers and not _stands_still(description)):
-        return
-    for each in findings():
-        if each.code is devices.HARDWARE_WITHOUT_PLUGIN and each.severity != "info":
-            name = str(each.values["name"])
-            yield name, Fault(test="controller", subject=name, reason=each)
-
-
-def _stands_still(description: RobotDescription) -> bool:
-    """Whether Gazebo loads no hardware of a robot."""
-    commanded = [
-        system
-        for system in description.ros2_control
-        if any(joint.find("command_interface") for joint in system.find_all("joint"))
-    ]
-    lost = {id(system) for system, _ in unloaded_systems(description)}
-    return bool(lost) and all(id(each) in lost for each in commanded)
-
-
-def unmanaged_controllers(findings: Callable[[], Sequence[Diagnostic]]) -> Iterator[Fault]:
-    """Controllers that a launch file starts for a robot in Gazebo, although no plugin runs them.
-
-    Plugins may drive other joints of the robot, or a program of the repository with a manager.
-    """
-    for each in findings():
-        if each.code is devices.HARDWARE_WITHOUT_PLUGIN and each.values.get("spawned"):
-            name, sure = str(each.values["name"]), "program" not in each.values
-            yield Fault(test="controller", subject=name, reason=each, sure=sure)
-
-
-def stopped_managers(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
-    """Controller managers that do not start in Gazebo because of a transmission, although
-    controllers should run. Cartwheel skips the transmission.
-    """
-    said = verdict.diagnostics
-    if not (verdict.controllers or verdict.spawned) or coded(said, LEFT_OUT) is not None:
-        # The missing part may contain the joint.
-        return
-    reason = next((each for each in said if each.values.get("stops") is True), None)
-    for tag in managers(description) if reason is not None else ():
-        if not_loaded(description, tag) is None:
-            yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
-
-
-def refused_controllers(verdict: Verdict) -> dict[str, Fault]:
-    """Controllers that ROS 2 does not start although others may run, by name: because of the type
-    of a parameter, which Cartwheel converts, or because their own type is not stated.
-    """
-    found: dict[str, Fault] = {}
-    for each in (*verdict.diagnostics, *verdict.observed):
-        name = str(each.values.get("controller", ""))
-        untyped = each.values.get("untyped") is True and may_move(name)
-        mistyped = each.code is devices.CONTROLLER_PARAMETER_TYPE and is_started(name, verdict)
-        if name and (untyped or mistyped):
-            found.setdefault(name, Fault(test="controller", subject=name, reason=each))
-    return found
 
 
 def missing_movers(
@@ -195,7 +127,7 @@ def missing_movers(
         if found is not None:
             unread = found
             yield Fault(test="controller", subject=name, reason=found)
-    apart = [each for each in verdict.observed if _is_misplaced(each)]
+    apart = [each for each in verdict.observed if is_misplaced(each)]
     for each in apart:
         yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
     if apart or held or verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
@@ -225,7 +157,8 @@ def missing_movers(
         if each.code in causes and managers(description, jointless=True)
     ]
     for each in undefined:
-        yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
+        name, sure = str(each.values["controller"]), not each.values.get("foreign")
+        yield Fault(test="controller", subject=name, reason=each, sure=sure)
     for tag in managers(description, jointless=bool(replaced)):
         # Without its manager, it does not matter what else is wrong.
         reason = _not_started(description, tag, findings) or most_severe(stopped)
@@ -319,11 +252,6 @@ def _is_in_unfound_package(reason: Diagnostic) -> bool:
     return reason.code is files.INCLUDE_ABSENT and reason.values.get("kind") == "package"
 
 
-def _is_misplaced(each: Diagnostic) -> bool:
-    """Whether a controller is started in another namespace than that of its parameters."""
-    return each.code is devices.CONTROLLER_UNDEFINED and "namespace" in each.values
-
-
 def _is_prefixed(unstarted: Diagnostic) -> bool:
     """Whether the unknown joint of a controller has a prefix that the robot's joint has not, or
     the other way round.
@@ -379,22 +307,3 @@ def held_bases(
                 yield short_name(str(each.values["plugin"])), each
             elif controller in verdict.controllers and is_started(controller, verdict):
                 yield controller, each
-
-
-def is_unmanaged(controller: str, verdict: Verdict, description: RobotDescription) -> bool:
-    """Whether Gazebo does not run a controller that was tested, because its manager exists only for
-    another Gazebo or version of ROS, or because a parameter has the wrong type.
-    """
-    if controller in refused_controllers(verdict):
-        return True
-    tags = managers(description) if controller in verdict.controllers else []
-    return bool(tags) and all(not_loaded(description, tag) is not None for tag in tags)
-
-
-def is_started(controller: str, verdict: Verdict) -> bool:
-    """Whether ROS runs a controller as well: a file may list more than a launch file starts."""
-    return (
-        not verdict.spawned
-        or controller not in verdict.controllers
-        or (controller in verdict.spawned)
-    )

@@ -79,6 +79,8 @@ class LaunchUse:
     """YAML files that it loads and that do not exist."""
     unfound: tuple[Unfound, ...] = ()
     """Those of them that certainly do not exist: their packages were found."""
+    foreign: tuple[Path, ...] = field(default=(), compare=False)
+    """Those of them that ROS 1 loads from a package that was not found."""
     stopped: tuple[MissingFile, ...] = ()
     """The files that certainly do not exist, and without which ROS does not start the launch file,
     or Gazebo does not start."""

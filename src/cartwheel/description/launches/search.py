@@ -250,6 +250,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 node_arguments=tuple(dict.fromkeys(each for _, each in facts.arguments)),
                 absent=tuple(facts.lost),
                 unfound=tuple(facts.unfound),
+                foreign=tuple(facts.foreign),
                 sought=tuple(dict.fromkeys(facts.sought)),
                 sought_in_ros2=tuple(dict.fromkeys(facts.sought_in_ros2)),
                 programs=tuple(facts.programs),

@@ -119,6 +119,8 @@ class Facts:
     """Such files that do not exist."""
     unfound: list[Unfound] = field(default_factory=list)
     """See `LaunchUse.unfound`."""
+    foreign: dict[Path, None] = field(default_factory=dict)
+    """See `LaunchUse.foreign`."""
     spawned: list[tuple[str, str]] = field(default_factory=list)
     """Controllers that are started, with the namespaces of their managers."""
     loaded: list[tuple[str, str]] = field(default_factory=list)

@@ -141,13 +141,16 @@ class _Reader:
 
     def _find(self, node: Node, space: str) -> None:
         """Notes the file of a ``<rosparam>`` if it is missing: one with the parameters of a single
-        controller, or one in a home folder.
+        controller, one in a home folder, or one of a package that was not found.
         """
         stated = node.attributes["file"]
         packages = [words for kind, words in _CALL.findall(stated) if kind == "find"]
         path, name = Path(self._value(node, "file").strip()), space.strip("/ ").rpartition("/")[2]
         known = path in self._facts.lost and len(packages) == stated.count("$") == 1
-        found = known and f'package "{packages[0].strip()}"' not in self._facts.absent
+        absent = {f'package "{each.strip()}"' for each in packages} & self._facts.absent.keys()
+        if absent and path in self._facts.lost:
+            self._facts.foreign[path] = None
+        found = known and not absent
         moved = path in self._facts.lost and is_in_home(stated.strip())
         if moved or (found and re.fullmatch(r"\w+", name)):
             name = "" if moved else name

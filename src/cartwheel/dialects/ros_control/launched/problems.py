@@ -110,7 +110,11 @@ def undefined(
                 f'"{starter.file.name}" starts the controller "{name}", but no file near it '
                 "contains its parameters, so it cannot be loaded",
                 origin=Origin(file=shown_path(starter.file)),
-                values={"controller": name, "absent": tuple(map(str, starter.absent))},
+                values={
+                    "controller": name,
+                    "absent": tuple(map(str, starter.absent)),
+                    "foreign": tuple(map(str, starter.foreign)),
+                },
                 hint=f"The launch file loads files that were not found: {lost}. They may be in "
                 "packages that are not installed."
                 if lost
