@@ -19,7 +19,7 @@ from cartwheel.dialects.ros2_control.mistyped import mistyped, mistyped_manager
 from cartwheel.dialects.ros2_control.refused_files import refused_file
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
 from cartwheel.dialects.ros2_control.unloaded import unloaded_systems
-from cartwheel.dialects.ros2_control.unstarted import without_parameters
+from cartwheel.dialects.ros2_control.unstarted import without_hardware, without_parameters
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
@@ -107,6 +107,10 @@ class Ros2Control(ControlPlugin):
         self.namespace = self.namespace.strip("/")
         if self.tag.element.find("robotNamespace") is not None:
             self.warn_ignored("robotNamespace", "the plugin reads only <ros><namespace>")
+        inactive = without_hardware(part.description, self.tag)
+        if inactive is not None:
+            # Before what is wrong with the files.
+            part.report(inactive)
         files = self.shared.get(ControllerFiles)
         own = files.take()
         stated = config.files if without_parameters(self.tag) is None else ()
@@ -140,7 +144,7 @@ class Ros2Control(ControlPlugin):
         skipped = {id(system) for system, _ in unloaded_systems(part.description)}
         for system in simulated_systems(part.description):
             self._check_system(system, skipped=id(system) in skipped)
-        if not joints:
+        if not joints and inactive is None:
             self.warn(
                 devices.CONTROL_WITHOUT_JOINTS,
                 no_joints("<ros2_control>", unknown_joints(notes)),

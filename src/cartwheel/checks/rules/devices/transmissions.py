@@ -12,6 +12,7 @@ from cartwheel.checks.subject import Subject, is_known
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element
 from cartwheel.dialects.catalogue import OF_FETCH, plugin_named
+from cartwheel.dialects.ros2_control.unstarted import without_hardware
 from cartwheel.dialects.ros_control.interfaces import ros2_control, transmissions
 from cartwheel.dialects.stopping import CONSEQUENCE
 from cartwheel.errors import Code, Diagnostic
@@ -61,7 +62,8 @@ def control_without_joints(subject: Subject) -> Iterator[Diagnostic]:
                 if plugin_named(tag.filename) is plugin_named(OF_FETCH):
                     # It commands all joints.
                     continue
-                yield devices_codes.CONTROL_WITHOUT_JOINTS.diagnostic(
+                inactive = without_hardware(robot.description, tag) if ros2 else None
+                yield inactive or devices_codes.CONTROL_WITHOUT_JOINTS.diagnostic(
                     f"{what} a joint, so controllers have no joint to command",
                     origin=tag.origin,
                     values={"plugin": tag.filename},
