@@ -34,6 +34,7 @@ from cartwheel.corpus.causes.falls import (
     need_not_stand,
 )
 from cartwheel.corpus.causes.inertias import flywheel, sluggish
+from cartwheel.corpus.causes.plugins import bodiless
 from cartwheel.corpus.drive_topics import controller_on, drives_on, without_other_sizes
 from cartwheel.corpus.faults import BASES, Fault, Test, coded, is_lost_model, most_severe
 from cartwheel.corpus.missing_movers import held_bases, missing_movers
@@ -171,6 +172,7 @@ def _faults(
     spawned = verdict.launch is not None and bool(verdict.launch.spawned)
     missing |= {each.subject: each for each in unmanaged_controllers(findings) if spawned}
     yield from reversed(missing.values())
+    yield from bodiless(verdict, missing)
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
     moved = verdict.drives or verdict.reaches or verdict.spins or verdict.flights
     yield from _measured(verdict, description, findings, None if moved else idle)

@@ -63,6 +63,18 @@ _OURS = frozenset(
 """Codes that do not show that the robot fails in Gazebo as well."""
 
 
+_DECIDING = frozenset(
+    {
+        files.FILE_ELSEWHERE,
+        devices.CONTROLLER_PARAMETER_TYPE,
+        devices.CONTROLLER_UNDEFINED,
+        devices.CONTROLLERS_FILE_UNREADABLE,
+        devices.HARDWARE_WITHOUT_PLUGIN,
+    }
+)
+"""Codes of mistakes for which controllers do not start, whatever else moves the robot."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Fault:
     """A failed test."""
@@ -93,6 +105,28 @@ class Fault:
             return "unknown"
         ours = {code.number for code in _OURS}
         return "unknown" if self.reason.values.get("cause") in ours else "file"
+
+    @property
+    def decides(self) -> bool:
+        """Whether it is a certain mistake in the robot's files, whatever else is unknown.
+
+        What is measured may depend on what is not supported, and so may a plugin or controller that
+        Cartwheel does not start.
+        """
+        if self.source != "file":
+            return False
+        if self.test == "controller":
+            return self.code in _DECIDING
+        refused = self.test == "plugin" and self.code is not running.PLUGIN_LEFT_OUT
+        return refused or self.test in ("load", "publish")
+
+    @property
+    def hides(self) -> bool:
+        """Whether it is unknown what else is in the robot's files: a part of them is absent, or
+        they could not be read.
+        """
+        absent = (files.INCLUDE_ABSENT, files.MACRO_ABSENT)
+        return self.source == "unknown" and (self.test == "load" or self.code in absent)
 
 
 def _is_outside(reason: Diagnostic) -> str:

@@ -247,7 +247,8 @@ class Flight:
 
 Outcome = Literal["good", "file", "unknown"]
 """- ``good``: the robot loads, stands, and moves as commanded.
-- ``file``: every fault is explained by a mistake in the robot's files.
+- ``file``: every fault is explained by a mistake in the robot's files, or at least one of them
+  whatever the causes of the others are; see `Fault.decides`.
 - ``unknown``: the cause of a fault is unknown, or Cartwheel does not support something.
 """
 
@@ -348,6 +349,9 @@ class Verdict:
         """The overall result."""
         if not self.faults:
             return "good"
+        hidden = any(fault.hides for fault in self.faults)
+        if not hidden and any(fault.decides for fault in self.faults):
+            return "file"
         return "file" if all(fault.source == "file" for fault in self.faults) else "unknown"
 
     @property
