@@ -37,6 +37,7 @@ SAME = frozenset(
         "dict",
         "list",
         "RewrittenYaml",
+        "perform_substitution",
         "ReplaceString",
     }
 )

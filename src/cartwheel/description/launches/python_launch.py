@@ -23,6 +23,7 @@ from cartwheel.description.launches.python_actions import (
     certain_functions,
     name_of,
     start_all,
+    unused_actions,
     used,
 )
 from cartwheel.description.launches.python_classes import CLASSES, Classes
@@ -42,9 +43,10 @@ from cartwheel.description.launches.python_functions import (
     SHARES,
     is_module,
 )
-from cartwheel.description.launches.python_unused import unused_actions
+from cartwheel.description.launches.python_imports import with_imports
 from cartwheel.description.launches.python_values import (
     NOTHING,
+    Configuration,
     Description,
     Unknown,
     combined,
@@ -80,7 +82,7 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
     try:
         content = read_regular_text(path).removeprefix("\ufeff")
         facts.effort.spend(len(content))
-        tree = ast.parse(content)
+        tree = with_imports(ast.parse(content), path, facts)
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return
     # Declared defaults may follow their use, so the file is read twice.
@@ -347,6 +349,8 @@ class _Reader:
             value = self.value(node.value)
             if node.attr == "parent" and isinstance(value, str):
                 return str(PurePosixPath(value).parent)
+            if node.attr == "robot_description" and isinstance(value, Configuration):
+                return {node.attr: self._described(value, {})}
             return NOTHING
         if isinstance(node, ast.Subscript):
             held, key = self.value(node.value), self.value(node.slice)
@@ -511,6 +515,16 @@ class _Reader:
         if name in ("safe_load", "full_load", "load") and is_module(node.func, "yaml"):
             # A file that was opened is its path.
             return loaded(text(first), self._facts.effort)
+        if name == "MoveItConfigsBuilder":
+            robot = text(words.get("robot_name", first))
+            package = text(words.get("package_name", f"{robot}_moveit_config"))
+            return Configuration(robot, self._facts.package(package))
+        if isinstance(holder, Configuration):
+            if name == "robot_description":
+                self._described(holder, {"file_path": first, **words} if places else words)
+            return holder
+        if name in ("lower", "upper") and is_known(holder):
+            return holder.lower() if name == "lower" else holder.upper()
         if name in OUTPUTS:
             said = first if isinstance(first, list) else [first]
             origin = Origin(file=str(self._path), line=node.lineno)
@@ -615,6 +629,16 @@ class _Reader:
             [NOTHING, *(given if isinstance(given, list) else [])],
             more if isinstance(more, dict) else {},
         )
+
+    def _described(self, robot: Configuration, words: dict[str, Any]) -> Description:
+        """The description of a configuration of MoveIt, with arguments that state its file. The
+        first ones count; by default, it is that of MoveIt's assistant.
+        """
+        if robot.description is None:
+            default = f"config/{robot.name}.urdf.xacro"
+            file = path_of((robot.folder, text(words.get("file_path", default))))
+            robot.description = self._processed(file, words.get("mappings", {}))
+        return robot.description
 
     def _processed(self, file: str, mappings: Any) -> Description:
         arguments = (

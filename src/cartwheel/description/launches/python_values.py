@@ -27,6 +27,21 @@ class Description:
         self.number = number
 
 
+class Configuration:
+    """The configuration of a robot that the builder of moveit_configs_utils makes.
+
+    Args:
+        name: The robot.
+        folder: The package of the configuration.
+    """
+
+    def __init__(self, name: str, folder: str) -> None:
+        self.name = name
+        self.folder = folder
+        self.description: Description | None = None
+        """None if it was not read yet."""
+
+
 NOTHING = Unknown()
 _JOINING = 1000
 """Steps to join a list, which may be long."""
