@@ -104,17 +104,14 @@ def undefined(
             left -= {name for name in left if _is_key(name.rpartition("/")[2], text)}
     # Files of other packages are searched in the launch file's own package.
     lost = ", ".join(f'"{path.name}"' for path in starter.absent)
+    absent, foreign = (tuple(map(str, each)) for each in (starter.absent, starter.foreign))
     for name in starter.spawned:
         if name in left:
             yield CONTROLLER_UNDEFINED.diagnostic(
                 f'"{starter.file.name}" starts the controller "{name}", but no file near it '
                 "contains its parameters, so it cannot be loaded",
                 origin=Origin(file=shown_path(starter.file)),
-                values={
-                    "controller": name,
-                    "absent": tuple(map(str, starter.absent)),
-                    "foreign": tuple(map(str, starter.foreign)),
-                },
+                values={"controller": name, "absent": absent, "foreign": foreign},
                 hint=f"The launch file loads files that were not found: {lost}. They may be in "
                 "packages that are not installed."
                 if lost
