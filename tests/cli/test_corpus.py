@@ -122,3 +122,27 @@ def test_the_column_for_sideways_motion_is_printed_if_a_robot_can_move_so(
     assert ("sideways" in head) == sideways
     if sideways:
         assert row[head.index("sideways")].endswith("%")
+
+
+ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">{}
+<link name="a"><inertial><mass value="$(arg size)"/><inertia ixx="0.5" iyy="0.5" izz="0.5"/>
+</inertial><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>
+"""
+
+
+def test_arguments_are_for_the_robots_that_declare_them(program, tmp_path):
+    (tmp_path / "arm.urdf.xacro").write_text(ARM.format('<xacro:arg name="size" default="1"/>'))
+    (tmp_path / "bare.urdf.xacro").write_text(ARM.format(""))
+    (tmp_path / "box.urdf").write_text(BOX)
+    words = ("size:=4", tmp_path, "unheard:=1", "--for", "1", "--json")
+    done = program("corpus", *words, status=None)
+    arm, bare, box = json.loads(done.stdout)["robots"]
+    assert [each["mass"] for each in (arm, bare, box)] == [4, 4, 3]
+    assert not any("CW123" in text for each in (arm, bare, box) for text in each["diagnostics"])
+    warnings = [line for line in done.stderr.splitlines() if "[CW123" in line]
+    assert len(warnings) == 1
+    assert '"unheard"' in warnings[0]
+
+
+def test_arguments_without_a_folder_are_an_error(program):
+    assert "a folder is missing" in program("corpus", "size:=4", status=2).stderr

@@ -166,6 +166,21 @@ def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
     return file, values
 
 
+def folders(words: Sequence[str]) -> tuple[list[Path], dict[str, str]]:
+    """The folders and files of a command, and its ``name:=value`` arguments, in any order.
+
+    Raises:
+        CartwheelError: There are only arguments.
+    """
+    pairs = [(word, _MAPPING.fullmatch(word)) for word in words]
+    found = [Path(word) for word, match in pairs if match is None]
+    if not found:
+        raise CartwheelError(
+            "a folder is missing", code=USAGE, hint="Pass a folder of robots, or a robot's file."
+        )
+    return found, {match[1]: match[2] for _, match in pairs if match is not None}
+
+
 def split_ros1(words: Sequence[str] | None) -> tuple[list[str], list[str]]:
     """A command's words without ROS 1 arguments, and those: ``__name:=``, ``_param:=``, ``/a:=b``.
 

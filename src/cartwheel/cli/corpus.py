@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -11,8 +10,13 @@ from cartwheel.cli import arguments, help
 
 
 def corpus(
-    folders: Annotated[
-        list[Path], help.argument("FOLDER|FILE...", "Folders to search, or robot files.")
+    words: Annotated[
+        list[str],
+        help.argument(
+            "FOLDER|FILE... [NAME:=VALUE]...",
+            "Folders to search, or robot files. NAME:=VALUE sets a xacro argument of the robots "
+            "that declare it.",
+        ),
     ],
     json: Annotated[bool, help.option("--json", "Print the results as JSON.")] = False,
     standing: Annotated[
@@ -28,7 +32,8 @@ def corpus(
     from cartwheel.cli.commands import corpus as work
     from cartwheel.dialects.plugin_files import using
 
+    folders, values = arguments.folders(words)
     with using(plugin or ()):
-        status = work.corpus(folders, package_path or [], json=json, standing=standing)
+        status = work.corpus(folders, values, package_path or [], json=json, standing=standing)
     if status:
         raise typer.Exit(status)

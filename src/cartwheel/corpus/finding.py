@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal
 
 from cartwheel.codes.files import FILE_MISSING, XACRO_NAME_UNKNOWN
 from cartwheel.corpus.movers import is_mover
-from cartwheel.corpus.worlds import robots_in_worlds, text_of, worlds_in
+from cartwheel.corpus.worlds import mounted, robots_in_worlds, text_of, worlds_in
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
 from cartwheel.description.files.package_folders import package_above, package_name
@@ -36,8 +37,6 @@ _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 _WORLDS = (".world", ".world.xacro", ".world.sdf")
 _ACTIVE = re.compile(r"""<(?:plugin|sensor|include|joint\b[^<>]*?\btype\s*=\s*["'](?!fixed))\b""")
 """Elements of an SDF model that is not scenery. An included model may contain the others."""
-_REFERENCE = re.compile(r"<(?:(/?)include\b|uri>\s*([^<>\s]{1,4096})\s*</uri>)")
-"""The beginning or end of an ``<include>``, or a ``<uri>``."""
 _TO_WORLD = re.compile(r"<(?:parent|child)>\s*world\s*<")
 _OF_ONE_JOINT = re.compile(r"joint")
 """Names of movers of single joints, such as those of a gimbal."""
@@ -89,7 +88,11 @@ class Survey:
 
 
 def survey(
-    folder: Path, *, package_path: Sequence[Path] = (), launches: Iterable[LaunchUse] = ()
+    folder: Path,
+    *,
+    arguments: Mapping[str, str] = MappingProxyType({}),
+    package_path: Sequence[Path] = (),
+    launches: Iterable[LaunchUse] = (),
 ) -> Survey:
     """Sorts the descriptions in a folder and its subfolders into robots and other files, and finds
     the robots that are written in worlds.
@@ -98,6 +101,7 @@ def survey(
 
     Args:
         folder: A folder, or a single description, which is a robot.
+        arguments: Arguments of the descriptions that declare them.
         package_path: Additional folders to search for packages.
         launches: Contents of launch files. The descriptions that they name are neither parts nor
             scenery.
@@ -121,7 +125,8 @@ def survey(
         launched=used,
         passed=frozenset(name for each in launches for name in each.arguments),
         parts=_included(text for path, text in texts.items() if path.resolve() in used),
-        mounted=_mounted(texts, [path for path, _ in worlds]),
+        mounted=mounted(texts, [path for path, _ in worlds]),
+        arguments=arguments,
         package_path=package_path,
     )
     kinds = {path: whole.kind(path) for path in texts}
@@ -158,6 +163,8 @@ class _Folder:
     launched: frozenset[Path]
     passed: frozenset[str]
     """Names of the arguments that launch files pass to descriptions."""
+    arguments: Mapping[str, str]
+    """Those that the user stated."""
     package_path: Sequence[Path]
     parts: Sequence[re.Pattern[str]]
     """Patterns for the ends of the paths of files that launched descriptions include."""
@@ -172,7 +179,7 @@ class _Folder:
         if path.name.endswith(_WORLDS):
             return "world"
         try:
-            opened = open_description(path, {}, self.package_path)
+            opened = open_description(path, self.arguments, self.package_path)
             root = opened.root
             if root.tag != "robot":
                 return self._sdf_kind(path, root, launched=launched)
@@ -292,35 +299,6 @@ def _is_fragment(root: Node) -> bool:
         return False
     (parent,) = missing
     return links <= {*children} and not _ROOT_LINK.match(parent) and not meant(parent, links)
-
-
-def _mounted(texts: Mapping[Path, str], worlds: Sequence[Path]) -> Set[Path]:
-    """The folders of SDF models that other models include, but none of the worlds.
-
-    Gazebo finds ``model://NAME`` in a folder NAME.
-    """
-    named = {name for world in worlds for name in _models(text_of(world))}
-    users: dict[str, set[Path]] = {}
-    for path, text in texts.items():
-        if path not in worlds:
-            for name in _models(text):
-                users.setdefault(name, set()).add(path.parent)
-    return {
-        path.parent
-        for path in texts
-        if path.parent.name not in named and users.get(path.parent.name, set()) - {path.parent}
-    }
-
-
-def _models(text: str) -> Iterator[str]:
-    """The names of the models that an SDF file includes."""
-    inside = False
-    for found in _REFERENCE.finditer(text):
-        uri = found[2]
-        if uri is None:
-            inside = not found[1]
-        elif inside and not uri.startswith(("http://", "https://")):
-            yield uri.removesuffix("/model.sdf").rstrip("/").rpartition("/")[2]
 
 
 def _is_base(text: str) -> bool:

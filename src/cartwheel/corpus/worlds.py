@@ -22,6 +22,8 @@ _MOST = 50
 """Maximum number of robots in one world."""
 _FIRST = re.compile(r"<(world|model|robot)[\s>]")
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_REFERENCE = re.compile(r"<(?:(/?)include\b|uri>\s*([^<>\s]{1,4096})\s*</uri>)")
+"""The beginning or end of an ``<include>``, or a ``<uri>``."""
 _STEEPEST = 0.6
 """Largest roll or pitch of a model because of the ground in its world, rad."""
 
@@ -172,3 +174,32 @@ def _moves(plugin: Node, joints: Set[str]) -> bool:
         words.update(node.text.split())
         remaining += node.children
     return is_mover(name) or may_drive(name, words, joints)
+
+
+def mounted(texts: Mapping[Path, str], worlds: Sequence[Path]) -> Set[Path]:
+    """The folders of SDF models that other models include, but none of the worlds.
+
+    Gazebo finds ``model://NAME`` in a folder NAME.
+    """
+    named = {name for world in worlds for name in _models(text_of(world))}
+    users: dict[str, set[Path]] = {}
+    for path, text in texts.items():
+        if path not in worlds:
+            for name in _models(text):
+                users.setdefault(name, set()).add(path.parent)
+    return {
+        path.parent
+        for path in texts
+        if path.parent.name not in named and users.get(path.parent.name, set()) - {path.parent}
+    }
+
+
+def _models(text: str) -> Iterator[str]:
+    """The names of the models that an SDF file includes."""
+    inside = False
+    for found in _REFERENCE.finditer(text):
+        uri = found[2]
+        if uri is None:
+            inside = not found[1]
+        elif inside and not uri.startswith(("http://", "https://")):
+            yield uri.removesuffix("/model.sdf").rstrip("/").rpartition("/")[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json as json_module
 import math
 from collections import Counter
@@ -12,10 +13,12 @@ from typing import Any, NamedTuple
 
 from cartwheel.cli.console import note, paint, say, table
 from cartwheel.codes.command import INTERNAL_FAULT, NO_ROBOTS
+from cartwheel.codes.files import ARGUMENT_UNKNOWN
 from cartwheel.corpus import Fault, Kind, Survey, Verdict, survey, try_robot
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.launches import LaunchUse, launches_near
-from cartwheel.errors import CartwheelError
+from cartwheel.description.loading import open_description
+from cartwheel.errors import CartwheelError, Diagnostic
 
 SCHEMA = 2
 _NONE = "-"
@@ -55,12 +58,18 @@ class _Robot(NamedTuple):
 
 
 def corpus(
-    folders: Sequence[Path], package_path: Sequence[Path], *, json: bool, standing: float
+    folders: Sequence[Path],
+    arguments: Mapping[str, str],
+    package_path: Sequence[Path],
+    *,
+    json: bool,
+    standing: float,
 ) -> int:
     """Tests all robots. Returns the exit status: 0 if all pass, else 1.
 
     Args:
         folders: Folders with robots at any depth, or single files.
+        arguments: Xacro arguments of the robots that declare them.
         package_path: Folders that are searched first for packages.
         json: Print JSON instead of a table.
         standing: Simulated time without commands before the tests, in s.
@@ -68,7 +77,7 @@ def corpus(
     Raises:
         CartwheelError: No robot was found.
     """
-    surveys = [_survey(folder, package_path) for folder in folders]
+    surveys = [_survey(folder, arguments, package_path) for folder in folders]
     robots = [
         _Robot(file, model, launches, folder if folder.is_dir() else None)
         for folder, (found, launches) in zip(folders, surveys, strict=True)
@@ -76,10 +85,15 @@ def corpus(
     ]
     skipped = [each for found, _ in surveys for each in found.skipped]
     verdicts = []
+    undeclared = set(arguments)
     for number, robot in enumerate(robots, start=1):
         name = _with_model(shown_path(robot.file), robot.model)
         note(paint(f"{number} of {len(robots)}: {name}", "dim"))
-        verdicts.append(_tried(robot, package_path, standing))
+        given = _declared(robot.file, arguments, package_path)
+        undeclared -= given.keys()
+        verdicts.append(_tried(robot, given, package_path, standing))
+    for name in sorted(undeclared):
+        note(str(_unused(name)))
     if json:
         result = {
             "schema": SCHEMA,
@@ -171,8 +185,27 @@ def summary(verdicts: Sequence[Verdict]) -> dict[str, int]:
     }
 
 
+def _declared(
+    file: Path, arguments: Mapping[str, str], package_path: Sequence[Path]
+) -> dict[str, str]:
+    """Those of the user's arguments that a description declares; all if it cannot be read."""
+    unknown: set[str] = set()
+    if arguments:
+        with contextlib.suppress(CartwheelError):
+            said = open_description(file, arguments, package_path).diagnostics
+            unknown = {str(each.values["name"]) for each in said if each.code is ARGUMENT_UNKNOWN}
+    return {name: value for name, value in arguments.items() if name not in unknown}
+
+
+def _unused(name: str) -> Diagnostic:
+    return ARGUMENT_UNKNOWN.diagnostic(
+        f'the argument "{name}" has no effect: no robot declares it',
+        values={"name": name, "meant": ""},
+    )
+
+
 def _survey(
-    folder: Path, package_path: Sequence[Path]
+    folder: Path, arguments: Mapping[str, str], package_path: Sequence[Path]
 ) -> tuple[Survey, Sequence[LaunchUse] | None]:
     """The robots in a folder, and its launch files; None for a file, whose package has them."""
     if not folder.exists():
@@ -180,7 +213,7 @@ def _survey(
             f"{folder} does not exist", code=NO_ROBOTS, values={"folder": str(folder)}
         )
     launches = launches_near(folder, package_path) if folder.is_dir() else None
-    found = survey(folder, package_path=package_path, launches=launches or ())
+    found = survey(folder, arguments=arguments, package_path=package_path, launches=launches or ())
     if not (found.robots or found.in_worlds):
         raise _no_robots(folder, found.skipped)
     return found, launches
@@ -212,10 +245,13 @@ def _counted(skipped: Sequence[tuple[Path, Kind]], after: Mapping[Kind, str] = _
     )
 
 
-def _tried(robot: _Robot, package_path: Sequence[Path], standing: float) -> Verdict:
+def _tried(
+    robot: _Robot, arguments: Mapping[str, str], package_path: Sequence[Path], standing: float
+) -> Verdict:
     try:
         return try_robot(
             robot.file,
+            arguments=arguments,
             package_path=package_path,
             standing=standing,
             launches=robot.launches,
