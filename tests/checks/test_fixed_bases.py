@@ -4,8 +4,10 @@ import pytest
 from tests.checks.test_steering_and_casters import BODY, REAR
 from tests.checks.test_wheel_speed import CLASSIC
 
+from cartwheel.api import World
 from cartwheel.checks.checking import check
 from cartwheel.codes.robot import BASE_FIXED
+from cartwheel.codes.running import MODEL_NOT_MOVABLE
 
 WORLD = '<link name="world"/>'
 HOLD = '<joint name="hold" type="{}"><parent link="{}"/><child link="{}"/></joint>'
@@ -76,3 +78,47 @@ def test_a_drive_of_a_static_model_is_reported(tmp_path, static):
     path.write_text(model(static=str(static)))
     found = [each for each in check(path).findings if each.code is BASE_FIXED]
     assert [each.values for each in found] == [{"plugin": "libgazebo_ros_diff_drive.so"}] * static
+
+
+BOX = (
+    '<link name="base"><inertial><mass value="{}"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+)
+MOVER = '<gazebo><plugin name="p" filename="{}"/></gazebo>'
+PLANAR = MOVER.format("libgazebo_ros_planar_move.so")
+
+
+@pytest.mark.parametrize(
+    ("parts", "hint"),
+    [
+        (BOX.format(1) + PLANAR, None),
+        (BOX.format(1) + WORLD + HOLD.format("fixed", "world", "base") + PLANAR, "joint"),
+        (BOX.format(1) + "<gazebo><static>true</static></gazebo>" + PLANAR, "<static>"),
+        (
+            BOX.format(1)
+            + WORLD
+            + HOLD.format("fixed", "world", "base")
+            + MOVER.format("gz-sim-velocity-control-system"),
+            "joint",
+        ),
+        # It moves only joints.
+        (
+            BOX.format(1)
+            + WORLD
+            + HOLD.format("fixed", "world", "base")
+            + MOVER.format("libgazebo_ros_joint_state_publisher.so"),
+            None,
+        ),
+    ],
+)
+def test_a_plugin_that_moves_a_held_model_is_reported(tmp_path, parts, hint):
+    path = tmp_path / "box.urdf"
+    path.write_text(f'<robot name="box">{parts}</robot>')
+    found = [each for each in check(path).findings if each.code is MODEL_NOT_MOVABLE]
+    assert len(found) == (hint is not None)
+    with World("empty", lenient=True) as world:
+        world.spawn(path)
+        run = [each for each in world.diagnostics if MODEL_NOT_MOVABLE.number in str(each.values)]
+        assert bool(run) == bool(found)
+    for each in found:
+        assert hint in each.hint

@@ -569,6 +569,15 @@ class RobotDescription:
         return sum(link.inertial.mass for link in self.links if link.inertial)
 
     @property
+    def is_free(self) -> bool:
+        """Whether the model can move as a whole: it has mass, and is not static or fixed to the
+        world.
+        """
+        fixed = any(joint.child == self.canonical_link for joint in self.joints)
+        known = self.link(self.canonical_link) is not None
+        return known and not (self.static or fixed) and self.mass > 0
+
+    @property
     def parts(self) -> str:
         """The number of links and joints, in words."""
         counts = (len(self.links), "link"), (len(self.joints), "joint")

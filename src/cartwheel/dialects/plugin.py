@@ -59,6 +59,8 @@ class Plugin(Component, Generic[C]):
     """Whether the plugin belongs directly inside a ``<world>``. Its `part` is then the world's."""
     also_in_world: ClassVar[bool] = False
     """Whether a plugin of models may also be directly inside a ``<world>``."""
+    moves_model: ClassVar[bool] = False
+    """Whether the plugin moves a model as a whole, which must be free to move."""
     empty_is_model: ClassVar[bool] = False
     """Whether an empty ``<robotNamespace>`` selects the model's name instead of no namespace."""
     reads_robot_namespace: ClassVar[bool] = True

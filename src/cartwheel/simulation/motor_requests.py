@@ -283,8 +283,7 @@ class MotorRequests(Requests):
         """
         description = self.description
         link = description.link(description.canonical_link)
-        bolted = any(j.child == description.canonical_link for j in description.joints)
-        if description.static or bolted or link is None or description.mass <= 0:
+        if link is None or not description.is_free:
             raise PluginError(
                 f'model "{self.name}" cannot be moved because it is static, is fixed to the '
                 "world or has no mass",

@@ -47,6 +47,7 @@ class VelocityControl(Plugin[VelocityControlParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-velocity-control-system",)
+    moves_model: ClassVar[bool] = True
 
     def configure(self) -> None:
         if self.tag.element.find("link_name"):

@@ -66,6 +66,7 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
         "librobotnik_force_based_move.so",
         "libnexus_ros_force_based_move.so",
     )
+    moves_model: ClassVar[bool] = True
 
     def configure(self) -> None:
         config = self.config

@@ -77,6 +77,7 @@ class PlanarForceMove(Plugin[PlanarForceMoveParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_force_move.so",)
+    moves_model: ClassVar[bool] = True
 
     def configure(self) -> None:
         config = self.config

@@ -1,4 +1,4 @@
-"""Whether the base that wheels drive is free to move."""
+"""Whether the base that wheels drive, or the model that a plugin moves, is free to move."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import drives_in
 from cartwheel.codes import robot as robot_codes
+from cartwheel.codes import running
 from cartwheel.description.model import Joint
+from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.errors import Diagnostic, Origin
 
 _WORLD = "world"
@@ -46,6 +48,29 @@ def base_fixed(subject: Subject) -> Iterator[Diagnostic]:
             values={"type": each.kind},
         )
         yield from _held(subject, robot, controller)
+
+
+@rule(running.MODEL_NOT_MOVABLE)
+def model_not_movable(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        base = robot.description.canonical_link
+        holder = robot.inbound.get(base) or _holder(robot, base)
+        if holder is None and not robot.description.static:
+            continue
+        for tag, _ in robot.plugins():
+            plugin = plugin_named(tag.filename)
+            if plugin is None or not plugin.moves_model:
+                continue
+            why, hint = "it is static", "Remove <static>."
+            if holder is not None:
+                why = f'joint "{holder.name}" fixes it to the world'
+                hint = "Remove the joint."
+            yield running.MODEL_NOT_MOVABLE.diagnostic(
+                f'plugin "{tag.filename}" cannot move the model, because {why}',
+                values={"plugin": tag.filename, "model": robot.description.name},
+                origin=tag.origin,
+                hint=hint,
+            )
 
 
 def _held(subject: Subject, robot: Robot, driver: _Driver) -> Iterator[Diagnostic]:

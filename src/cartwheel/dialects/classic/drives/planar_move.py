@@ -49,6 +49,7 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)
+    moves_model: ClassVar[bool] = True
 
     def configure(self) -> None:
         config = self.config
