@@ -34,6 +34,8 @@ def corpus(
 
     folders, values = arguments.folders(words)
     with using(plugin or ()):
-        status = work.corpus(folders, values, package_path or [], json=json, standing=standing)
+        status = work.corpus(
+            folders, package_path or [], json=json, standing=standing, arguments=values
+        )
     if status:
         raise typer.Exit(status)

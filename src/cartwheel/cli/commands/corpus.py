@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cartwheel.cli.console import note, paint, say, table
@@ -59,20 +60,20 @@ class _Robot(NamedTuple):
 
 def corpus(
     folders: Sequence[Path],
-    arguments: Mapping[str, str],
     package_path: Sequence[Path],
     *,
     json: bool,
     standing: float,
+    arguments: Mapping[str, str] = MappingProxyType({}),
 ) -> int:
     """Tests all robots. Returns the exit status: 0 if all pass, else 1.
 
     Args:
         folders: Folders with robots at any depth, or single files.
-        arguments: Xacro arguments of the robots that declare them.
         package_path: Folders that are searched first for packages.
         json: Print JSON instead of a table.
         standing: Simulated time without commands before the tests, in s.
+        arguments: Xacro arguments of the robots that declare them.
 
     Raises:
         CartwheelError: No robot was found.

@@ -61,13 +61,15 @@ def model_not_movable(subject: Subject) -> Iterator[Diagnostic]:
             plugin = plugin_named(tag.filename)
             if plugin is None or not plugin.moves_model:
                 continue
+            values = {"plugin": tag.filename, "model": robot.description.name}
             why, hint = "it is static", "Remove <static>."
             if holder is not None:
                 why = f'joint "{holder.name}" fixes it to the world'
                 hint = "Remove the joint."
+                values["joint"] = holder.name
             yield running.MODEL_NOT_MOVABLE.diagnostic(
                 f'plugin "{tag.filename}" cannot move the model, because {why}',
-                values={"plugin": tag.filename, "model": robot.description.name},
+                values=values,
                 origin=tag.origin,
                 hint=hint,
             )
