@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 from tests.coded import coded, raises
+from tests.corpus.carts import cart, written
+from tests.corpus.test_rivals import managed
 
 import cartwheel as cw
 from cartwheel.codes.devices import CONTROLLER_ONLY_LOADED
@@ -435,3 +437,36 @@ def test_errors_of_a_launch_file(package: Path) -> None:
     (package / "launch/two.launch").write_text(TWO.replace("$(arg arena)", "$(env NO_SUCH_ARENA)"))
     with cw.launch(package / "launch/two.launch") as world:
         assert [each.values for each in coded(world, LAUNCH_VALUE_UNKNOWN)] == [{"what": "world"}]
+
+
+@pytest.mark.parametrize(
+    ("outside", "inside", "manager"),
+    [("", "drives/", "/"), ("drives", "", "/drives")],
+    ids=["path", "namespace"],
+)
+def test_a_spawner_of_ros1_names_a_controller_by_its_path(
+    tmp_path: Path, outside: str, inside: str, manager: str
+) -> None:
+    """Its topics are below this path, in the namespace of the controller manager."""
+    space = f"<robotNamespace>{manager}</robotNamespace></plugin></gazebo>"
+    parts = managed("Velocity").replace("/></gazebo>", f">{space}")
+    written(tmp_path, cart(), parts)
+    (tmp_path / "package.xml").write_text("<package><name>cart</name></package>")
+    (tmp_path / "drives.yaml").write_text(
+        "drives:\n  base:\n    type: diff_drive_controller/DiffDriveController\n"
+        "    left_wheel: left_joint\n    right_wheel: right_joint\n"
+        "    wheel_separation: 0.2\n    wheel_radius: 0.05\n"
+    )
+    launch = tmp_path / "sim.launch"
+    launch.write_text(f"""<launch>
+      <rosparam file="$(find cart)/drives.yaml"/>
+      <param name="robot_description" textfile="$(find cart)/robot.urdf"/>
+      <node pkg="gazebo_ros" type="spawn_model" name="s" args="-param robot_description"/>
+      <node pkg="controller_manager" type="spawner" name="c" ns="{outside}"
+        args="{inside}base"/>
+    </launch>""")
+    with cw.launch(launch) as world:
+        world.run(0.1)
+        names = {topic.name for topic in world.session.graph.topics()}
+        found = {name for name in names if name.endswith("/cmd_vel")}
+        assert found == {"/drives/base/cmd_vel"}

@@ -8,7 +8,7 @@ import pytest
 from cartwheel.checks import check
 from cartwheel.cli.commands.corpus import corpus
 from cartwheel.codes.files import LAUNCH_VALUE_UNKNOWN
-from cartwheel.description.launches import effort, read_launch, search
+from cartwheel.description.launches import alternatives, effort, read_launch, reading, search
 
 ARM = (
     '<robot name="arm"><link name="world"/><link name="base"><inertial><mass value="1"/>'
@@ -74,7 +74,8 @@ def test_too_many_folders_are_reported(package, monkeypatch):
 
 
 def test_too_many_includes_are_reported(package, monkeypatch):
-    monkeypatch.setattr(search, "INCLUDES", 1)
+    for module in (alternatives, reading):
+        monkeypatch.setattr(module, "INCLUDES", 1)
     text = '<launch><include file="$(find arm)/launch/one.launch"/></launch>'
     (package / "launch" / "all.launch").write_text(text)
     ((file, _),) = reported(package)

@@ -158,3 +158,27 @@ def test_parameters_for_a_controller_in_another_namespace(robot):
     assert reasons(verdict) == {CONTROLLER_NOT_STARTED}
     assert '"/robot/base"' in verdict.faults[0].reason.hint
     assert verdict.outcome == "file"
+
+
+@pytest.mark.parametrize("writes", [False, True])
+def test_controllers_may_be_in_a_file_that_a_launch_file_writes(tmp_path, writes):
+    """Then nothing is known about them, and the fault may not be in the files of the robot."""
+    text = controlled(tmp_path)
+    (tmp_path / "base.yaml").write_text("controller_manager: {ros__parameters: {}}\n")
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "package.xml").write_text("<package><name>cart</name></package>")
+    robot = written(tmp_path, cart(), text)
+    (tmp_path / "launch").mkdir()
+    (tmp_path / "launch" / "sim.launch.py").write_text(f"""
+def generate_launch_description():
+    {"yaml.dump({}, open('/a.yaml', 'w'))" if writes else "pass"}
+    robot = open("{robot}").read()
+    return LaunchDescription([
+        Node(package="robot_state_publisher", parameters=[{{"robot_description": robot}}]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+        Node(package="controller_manager", executable="spawner", arguments=["base"]),
+    ])
+""")
+    verdict = try_robot(robot, standing=1.0)
+    assert {each.source for each in verdict.faults} == {"unknown" if writes else "file"}
+    assert (CONTROLLER_UNDEFINED in {each.code for each in verdict.faults}) == (not writes)

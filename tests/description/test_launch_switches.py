@@ -2,7 +2,7 @@
 
 import pytest
 
-from cartwheel.description.launches import chosen, launches_near
+from cartwheel.description.launches import chosen, launches_near, starters
 
 PUBLISHER = """
 def generate_launch_description():
@@ -115,3 +115,71 @@ def test_a_launch_file_in_xml_starts_gazebo_with_another_value(tmp_path, text, v
     robot = package(tmp_path)
     (tmp_path / "launch" / "main.launch").write_text(text)
     assert used(tmp_path, robot)[1:] == ({"simulated": value}, (("mode", value),))
+
+
+ARMS = """<launch>
+    <arg name="prefix" default=""/>
+    <arg name="model" default=""/>
+    <arg name="use_controllers" default="false"/>
+    <param name="robot_description"
+        command="xacro $(find bot)/urdf/$(arg model).urdf.xacro name:=$(arg model)"/>
+    <node pkg="gazebo_ros" type="spawn_model" name="s" args="-param robot_description"/>
+    <group if="$(arg use_controllers)">
+        <rosparam file="$(find bot)/config/$(arg model).yaml"/>
+        <node pkg="controller_manager" type="spawner" name="c" args="arm_controller"/>
+    </group>
+</launch>"""
+REAL = """<launch>
+    <param name="robot_description" command="xacro $(find bot)/urdf/small.urdf.xacro"/>
+    <rosparam file="$(find bot)/config/real.yaml"/>
+    <node pkg="controller_manager" type="spawner" name="c" args="real_controller"/>
+</launch>"""
+
+
+@pytest.fixture
+def arms(tmp_path):
+    """Two arms of which a launch file starts the one that an argument without a default names."""
+    package(tmp_path)
+    for folder in ("urdf", "config"):
+        (tmp_path / folder).mkdir()
+    for name in ("small", "large"):
+        (tmp_path / "urdf" / f"{name}.urdf.xacro").write_text('<robot name="arm"/>')
+        (tmp_path / "config" / f"{name}.yaml").write_text("arm_controller: {type: a/B}\n")
+    (tmp_path / "config" / "real.yaml").write_text("real_controller: {type: a/B}\n")
+    (tmp_path / "launch" / "arms.launch").write_text(ARMS)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["small", "large"])
+def test_an_empty_argument_is_the_name_of_a_description(arms, name):
+    robot = arms / "urdf" / f"{name}.urdf.xacro"
+    uses = [each for each in launches_near(arms) if each.description == robot]
+    use = chosen(robot, uses)
+    assert use is not None
+    assert use.simulated
+    assert use.arguments == {"name": name}
+    assert not use.spawned
+    # With another value of an argument, it starts controllers.
+    (other,) = (each for each in uses if each.switched)
+    assert other.switched == (("use_controllers", "true"),)
+    assert other.spawned == ("arm_controller",)
+    assert [path.name for path in other.controllers] == [f"{name}.yaml"]
+
+
+def test_controllers_in_gazebo_are_preferred_to_those_of_the_real_robot(arms):
+    """Its launch file loads the same description."""
+    (arms / "launch" / "a.launch").write_text(REAL)
+    robot = arms / "urdf" / "small.urdf.xacro"
+    found = starters(robot, launches_near(arms), described=True)
+    assert [each.spawned for each in found] == [("arm_controller",), ("real_controller",)]
+
+
+def test_controllers_of_a_robot_that_an_argument_names_are_for_no_other(arms):
+    text = ARMS.replace('default="false"', 'default="true"')
+    (arms / "launch" / "arms.launch").write_text(text)
+    uses = launches_near(arms)
+    assert {each.description and each.description.name for each in uses} == {
+        "large.urdf.xacro",
+        "small.urdf.xacro",
+    }
+    assert all(each.spawned for each in uses)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from cartwheel.description.launches import chosen, launches_near, search
+from cartwheel.description.launches import alternatives, chosen, launches_near
 
 ROBOT = '<robot name="arm"><link name="base"/></robot>'
 INCLUDED = """import os
@@ -652,7 +652,7 @@ def test_a_stranger_with_many_arguments_does_not_make_the_search_long(sizes, mon
         searched.append(word)
         return {}
 
-    monkeypatch.setattr(search, "beside", beside)
+    monkeypatch.setattr(alternatives, "beside", beside)
     assert launches_near(folder)
     assert 0 < len(searched) <= 100
 

@@ -165,10 +165,13 @@ def missing_movers(
         reason = reason or most_severe(
             each for each in said if each.code in codes and _concerns(each, tag)
         )
+        # A launch file may write the controllers when it is executed.
+        sure = verdict.launch is None or not verdict.launch.writes
         if reason is None and not undefined and unread is None:
             reason = _uncommanded(verdict, tag)
         if reason is not None:
-            yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+            subject = short_name(tag.filename)
+            yield Fault(test="controller", subject=subject, reason=reason, sure=sure)
 
 
 def _not_started(
@@ -191,9 +194,7 @@ def _not_started(
 
 
 def _is_moved(verdict: Verdict, description: RobotDescription) -> bool:
-    """Whether supported plugins and controllers move the base, or the joints if the base is held or
-    they drive all of them.
-    """
+    """Whether supported plugins and controllers move the base, or all joints, or a held robot."""
     if verdict.drives or verdict.flights:
         return True
     held = verdict.stand is not None and verdict.stand.fixed
@@ -209,9 +210,7 @@ def _is_all_driven(verdict: Verdict, description: RobotDescription) -> bool:
 
 
 def _movable(description: RobotDescription) -> set[str]:
-    """The joints that can move: not those whose limits leave no room, such as those by which
-    sensors are attached.
-    """
+    """The joints that can move: not those whose limits leave no room, as of attached sensors."""
     return {
         each.name
         for each in description.joints

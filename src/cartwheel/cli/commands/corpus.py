@@ -19,6 +19,7 @@ from cartwheel.corpus import Fault, Kind, Survey, Verdict, survey, try_robot
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.launches import LaunchUse, launches_near
 from cartwheel.description.loading import open_description
+from cartwheel.description.rewritten import original
 from cartwheel.errors import CartwheelError, Diagnostic
 
 SCHEMA = 2
@@ -128,9 +129,9 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
         "plugins": list(verdict.plugins),
         "missing_plugins": list(verdict.missing),
         "controllers": list(verdict.controllers),
-        "controller_files": [str(path) for path in verdict.controller_files],
+        "controller_files": [str(original(path)) for path in verdict.controller_files],
         "launch": verdict.launch
-        and {"file": str(verdict.launch.file), "arguments": dict(verdict.launch.arguments)},
+        and {"file": str(verdict.launch.file), "arguments": _arguments(verdict.launch)},
         "stands": stand and {
             "state": stand.state,
             "sunk": stand.sunk,
@@ -156,6 +157,14 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
         "speed": _number(verdict.speed),
         "diagnostics": [str(each) for each in (*verdict.diagnostics, *verdict.unread)],
     }  # fmt: skip
+
+
+def _arguments(use: LaunchUse) -> dict[str, str]:
+    """The arguments of a launch file, with the originals of files whose text it changes."""
+    return {
+        name: str(original(Path(text))) if text.endswith((".yaml", ".yml")) else text
+        for name, text in use.arguments.items()
+    }
 
 
 def _fault(fault: Fault) -> dict[str, Any]:
@@ -311,7 +320,7 @@ def _show_faults(verdict: Verdict) -> None:
     name = _with_model(shown_path(verdict.file), verdict.model)
     say(f"\n{paint(name, 'bold')}: {_OUTCOMES[verdict.outcome]}")
     if verdict.launch is not None and verdict.launch.arguments:
-        given = " ".join(f"{key}:={text}" for key, text in verdict.launch.arguments.items())
+        given = " ".join(f"{key}:={text}" for key, text in _arguments(verdict.launch).items())
         switched = "".join(f" {name}:={value}" for name, value in verdict.launch.switched)
         place = f"{shown_path(verdict.launch.file)}{switched}"
         say(paint(f"  with the arguments in {place}: {given}", "dim"))

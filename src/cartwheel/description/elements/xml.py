@@ -19,6 +19,7 @@ from cartwheel.codes import tags
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.node import Node, copied, needs_xacro, to_element
 from cartwheel.description.elements.unread import unread
+from cartwheel.description.rewritten import original
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
 
 __all__ = [
@@ -51,7 +52,11 @@ MAX_DEPTH = 100
 
 
 def shown_path(path: Path) -> str:
-    """A path for messages: relative to the current folder if it is inside."""
+    """A path for messages: relative to the current folder if it is inside.
+
+    That of the original for a copy that a launch file changes.
+    """
+    path = original(path)
     try:
         return str(path.absolute().relative_to(Path.cwd()))
     except (ValueError, OSError):

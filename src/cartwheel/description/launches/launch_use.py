@@ -104,6 +104,8 @@ class LaunchUse:
     places: tuple[tuple[str, Path], ...] = ()
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""
+    writes: bool = False
+    """Whether it writes a YAML file when it is executed, which may contain controllers."""
     lacking: bool = False
     """Whether an argument has neither a default nor a value. ROS does not start it without one."""
     simulated: bool = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -42,6 +43,24 @@ class Configuration:
         """None if it was not read yet."""
 
 
+class Changed:
+    """The path of a file whose text a launch file changes, which is made when it is used.
+
+    Args:
+        make: Returns the path.
+        source: The path of the file itself.
+    """
+
+    def __init__(self, make: Callable[[], str], source: Any) -> None:
+        self._make = make
+        self.source = source
+
+    @cached_property
+    def path(self) -> str:
+        """The path of the changed file."""
+        return self._make()
+
+
 NOTHING = Unknown()
 _JOINING = 1000
 """Steps to join a list, which may be long."""
@@ -61,7 +80,7 @@ def text(value: Any) -> str:
         return str(value)
     if isinstance(value, list):
         return joined(value)
-    return UNKNOWN
+    return value.path if isinstance(value, Changed) else UNKNOWN
 
 
 def joined(value: Any) -> str:

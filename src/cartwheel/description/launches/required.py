@@ -12,7 +12,8 @@ from cartwheel.description.files.package_search import Searched
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.repositories import repository_of, root_of
 from cartwheel.description.launches.effort import UNKNOWN, Effort
-from cartwheel.description.launches.search import facts_of, launch_files
+from cartwheel.description.launches.reading import facts_of
+from cartwheel.description.launches.search import launch_files
 from cartwheel.description.launches.use import Facts
 from cartwheel.errors import Diagnostic, Origin
 

@@ -21,8 +21,8 @@ from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyErro
 from cartwheel.description.launches.launch_use import LaunchUse, only_loaded
 from cartwheel.description.launches.mistakes.unexpanded import not_expanded
 from cartwheel.description.launches.python_variables import Place
+from cartwheel.description.launches.reading import INCLUDES, facts_of, uses_of
 from cartwheel.description.launches.required import about_arguments, stated_by_includers
-from cartwheel.description.launches.search import INCLUDES, facts_of, uses_of
 from cartwheel.description.launches.spawning import Spawn
 from cartwheel.description.launches.use import ABSENT, Facts
 from cartwheel.errors import DescriptionError, Diagnostic, Origin

@@ -84,6 +84,8 @@ class Facts:
     file: Path = Path()
     """The launch file that is read."""
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
+    words: dict[Path, str] = field(default_factory=dict)
+    """What stands for the unknown part of the name of a description."""
     plain: dict[int, Origin] = field(default_factory=dict)
     """Where those are stated whose text is not expanded, by their numbers."""
     raw: set[int] = field(default_factory=set)
@@ -151,6 +153,9 @@ class Facts:
     uncertain: dict[tuple[Path, int, str], Uncertain] = field(default_factory=dict)
     """Functions and variables in Python that may have different values, and texts of files, by the
     launch file, the line of the first value and the name."""
+    kept: dict[str, tuple[Path, int]] = field(default_factory=dict)
+    """Files of whose text a launch file changes a part to an unknown value, with its path and line.
+    """
     conditionals: dict[Place, int] = field(default_factory=dict)
     """The expressions ``a if condition else b`` with an unknown condition, with the lines of a."""
     reversed: Collection[Place] = ()
@@ -166,6 +171,8 @@ class Facts:
     """The arguments of the launch file itself that have their default, such as the robot's type."""
     choices: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """Their values that are stated to be valid."""
+    writes: bool = False
+    """See `LaunchUse.writes`."""
     leaves_out: bool = False
     """Whether a condition that does not hold leaves out a part."""
     strict: bool = False
@@ -281,9 +288,9 @@ class Facts:
         if file is None:
             return None
         if UNKNOWN in str(file.parent):
-            if (found := variants.below(file, UNKNOWN, self.file)) is None:
+            if (place := variants.below(file, UNKNOWN, self.file)) is None:
                 return ABSENT
-            file = found
+            file = place
         number = len(self.descriptions)
         if UNKNOWN not in file.name:
             file = self.here(file)
@@ -291,7 +298,9 @@ class Facts:
                 self.descriptions.append((file, dict(arguments)))
         elif variants.is_telling(file, UNKNOWN):
             known = {**arguments, "": UNKNOWN}
-            self.descriptions += [(each, dict(known)) for each in variants.beside(file, UNKNOWN)]
+            found = variants.beside(file, UNKNOWN)
+            self.words |= found
+            self.descriptions += [(each, dict(known)) for each in found]
         if len(self.descriptions) > number:
             return number
         self.absent[f'file "{file}"'.replace(UNKNOWN, "…")] = None
@@ -309,6 +318,17 @@ class Facts:
             read = self.unread.pop(spawn.source, None)
             if read is not None:
                 self.store_parameter(f"/{spawn.source}", read())
+
+    def note_kept(self) -> None:
+        """Notes the `kept` parts of files with controllers or for the bridge; others are ignored,
+        such as those of Nav2.
+        """
+        used = {str(path) for path in (*(path for _, path in self.yamls), *self.bridges)}
+        used.update(*(arguments.values() for _, arguments in self.descriptions))
+        for file, (path, line) in self.kept.items():
+            if file in used:
+                place = (path, line, Path(file).name)
+                self.uncertain.setdefault(place, Uncertain(what="text", used=line))
 
     def store_topic(self, space: str, number: int | None, remappings: Mapping[str, str]) -> None:
         """Stores which description a robot_state_publisher publishes; the first one counts.

@@ -47,7 +47,7 @@ class Controller(Component):
         self.type = type_name
         self.settings = settings
         self.robot = robot
-        outer = robot.plugin.scope
+        outer, space = robot.plugin.scope, robot.spaces.get(name, "")
         super().__init__(
             ControllerScope(
                 part=outer.part,
@@ -59,7 +59,7 @@ class Controller(Component):
                 input_name=name,
                 name=name,
                 outer=outer,
-                base=robot.namespace,
+                base=resolve_name(space, robot.namespace) if space else robot.namespace,
                 own=robot.remappings.get(name, {}),
             )
         )

@@ -47,6 +47,8 @@ class ControllerEntry:
     """Parameters that the file gives to all nodes. Unknown ones cause no warning."""
     remappings: Mapping[str, str] = field(default_factory=dict)
     """Remapped topic names: new names by old names."""
+    space: str = ""
+    """A namespace that is a part of its name in ROS 1, without the first and last slash."""
     misplaced: frozenset[str] = frozenset()
     """Names of values beside the type, in the manager's parameters, which ROS 2 does not use."""
     elsewhere: str = ""
@@ -91,7 +93,11 @@ class ControllerFiles:
         Arguments of their nodes replace those in the files, as with ROS 2's spawner.
         """
         listed = [
-            replace(entry, remappings=remappings(self.arguments[entry.name]))
+            replace(
+                entry,
+                remappings=remappings(self.arguments[entry.name]),
+                space=_namespace(self.arguments[entry.name]),
+            )
             if entry.name in self.arguments
             else entry
             for entry in entries
@@ -369,6 +375,12 @@ def remappings(arguments: Any) -> dict[str, str]:
         if flag in ("-r", "--remap")
     ]
     return {source: target for source, mark, target in pairs if mark}
+
+
+def _namespace(arguments: Iterable[str]) -> str:
+    """The namespace (``__ns:=name``) among a node's arguments; empty if there is none."""
+    stated = (word.partition(":=") for word in arguments)
+    return next((value.strip("/") for name, _, value in stated if name == "__ns"), "")
 
 
 def _ros2_nodes(

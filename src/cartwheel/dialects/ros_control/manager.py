@@ -134,6 +134,7 @@ class ControllerManager:
     def load_entry(self, entry: ControllerEntry) -> Controller:
         """Creates a controller from a file; see `load`."""
         self.robot.remappings[entry.name] = entry.remappings
+        self.robot.spaces[entry.name] = entry.space
         return self.load(entry.name, entry.settings(), entry.type)
 
     def unload(self, name: str) -> None:

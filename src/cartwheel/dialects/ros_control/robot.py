@@ -63,6 +63,8 @@ class ControlledRobot:
         """Control period, ns."""
         self.remappings: dict[str, Mapping[str, str]] = {}
         """Remapped topic names, by controller."""
+        self.spaces: dict[str, str] = {}
+        """Namespaces of controllers in that of the robot, by controller."""
         self.take_over: Callable[[str], None] = _refuse
         """Starts a controller and stops those that command its joints; see
         `ControllerManager.take_over`."""

@@ -28,7 +28,13 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.ros_control.files import for_robot, read_parameters
-from cartwheel.dialects.ros_control.launched.names import as_named, last_names, named_in, used_names
+from cartwheel.dialects.ros_control.launched.names import (
+    as_named,
+    last_names,
+    named_in,
+    node_arguments,
+    used_names,
+)
 from cartwheel.dialects.ros_control.launched.problems import (
     misplaced,
     misplaced_names,
@@ -73,18 +79,15 @@ class Selection:
     arguments: tuple[tuple[str, tuple[str, ...]], ...] = ()
     """Names of controllers, with the ROS arguments that the launch file gives to their nodes."""
     problems: tuple[Diagnostic, ...] = ()
-    """Why files that the launch file loads for these controllers cannot be read, and which
-    controllers are not started."""
+    """Why files of these controllers cannot be read, and which controllers are not started."""
     launch: Path | None = None
     """The launch file that starts the controllers."""
     loaded: tuple[Path, ...] = ()
     """All YAML files that it loads."""
     used: frozenset[str] = frozenset()
-    """Names of the controllers that any launch file of the robot starts or loads; empty if they are
-    not all known, or if there are none."""
+    """Names of the controllers that launch files of the robot start or load, if all are known."""
     idle_launch: Path | None = None
-    """The launch file that starts the robot in Gazebo, if no launch file starts or loads a
-    controller that may move it."""
+    """The launch file that starts the robot in Gazebo, if none starts or loads what may move it."""
 
 
 def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -> Selection:
@@ -144,8 +147,7 @@ def selection(
         use: The launch file that starts the robot; None if there is none.
         launches: All launch files near the robot.
         within: A folder; files outside of it that no launch file names are not used.
-        tolerant: Whether controllers start although the launch file starts them in another
-            namespace than that of their parameters.
+        tolerant: Whether controllers start in another namespace than that of their parameters.
     """
     starter = controllers_for(Path(robot.origin.file), use, launches)
     started = any(each.spawned for each in _about(robot, launches))
@@ -197,7 +199,7 @@ def selection(
         files=files,
         names=names,
         idle=idle,
-        arguments=() if starting is None else starting.node_arguments,
+        arguments=node_arguments(starting, files, robot),
         problems=problems,
         launch=None if starting is None else starting.file,
         loaded=() if starting is None else starting.controllers,

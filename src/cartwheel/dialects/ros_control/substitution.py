@@ -16,6 +16,7 @@ from cartwheel import yaml_text
 from cartwheel.codes import devices
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.rewritten import original
 from cartwheel.errors import CartwheelError, Origin, PluginError
 from cartwheel.options import xacro_argument
 
@@ -37,7 +38,7 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
 
     def find(name: str) -> str:
         if not packages:
-            packages.append(Packages(path))
+            packages.append(Packages(original(path)))
         return str(packages[0].find(name))
 
     def value(match: re.Match[str]) -> str:

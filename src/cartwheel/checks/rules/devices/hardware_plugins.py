@@ -152,6 +152,7 @@ def _unmanaged(subject: Subject, robot: Robot, use: LaunchUse) -> Iterator[Diagn
     description = robot.description
     if (
         not use.simulated
+        or use.guessed
         or all(_STATES in name for name in use.spawned)
         or any("control" in short_name(tag.filename) for tag in description.plugins)
         or managers(robot, ros2=True)

@@ -125,6 +125,28 @@ def named_in(
     return as_named(names, entries)
 
 
+def node_arguments(
+    starter: LaunchUse | None, files: Iterable[Path], robot: RobotDescription
+) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Returns the ROS arguments of controllers, by name.
+
+    In ROS 1, a spawner may name a controller by its path, such as ``controllers/drive``. Its topics
+    are then below this path, which ``__ns:=controllers`` states.
+    """
+    if starter is None:
+        return ()
+    paths = {name.strip("/") for name in starter.spawned if "/" in name.strip("/")}
+    found: dict[str, tuple[str, ...]] = {}
+    for path in files if paths else ():
+        with contextlib.suppress(PluginError):
+            content = for_robot(read_parameters(path), path, robot)
+            for entry in [] if is_ros2(content) else ros1_entries(content, str(path)):
+                space = entry.namespace
+                if space != _space(robot).strip("/") and f"{space}/{entry.name}" in paths:
+                    found[entry.name] = (f"__ns:={space}",)
+    return (*starter.node_arguments, *found.items())
+
+
 def used_names(
     launches: Iterable[LaunchUse],
     about: Iterable[LaunchUse],

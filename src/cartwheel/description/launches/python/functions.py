@@ -25,7 +25,6 @@ SAME = frozenset(
         "Path",
         "TextSubstitution",
         "ParameterValue",
-        "ParameterFile",
         "PythonLaunchDescriptionSource",
         "XMLLaunchDescriptionSource",
         "AnyLaunchDescriptionSource",
@@ -36,9 +35,7 @@ SAME = frozenset(
         "expanduser",
         "dict",
         "list",
-        "RewrittenYaml",
         "perform_substitution",
-        "ReplaceString",
     }
 )
 """Functions whose value is that of their first argument, or of a keyword in `FIRST`."""

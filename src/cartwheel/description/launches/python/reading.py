@@ -17,7 +17,7 @@ from cartwheel.description.files.package_folders import is_file
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.effort import LONGEST, UNKNOWN
 from cartwheel.description.launches.environment import is_environ, is_variable, ros_variable
-from cartwheel.description.launches.python_actions import (
+from cartwheel.description.launches.python.actions import (
     Later,
     called_functions,
     certain_functions,
@@ -26,14 +26,14 @@ from cartwheel.description.launches.python_actions import (
     unused_actions,
     used,
 )
-from cartwheel.description.launches.python_classes import CLASSES, Classes
-from cartwheel.description.launches.python_conditions import (
+from cartwheel.description.launches.python.classes import CLASSES, Classes
+from cartwheel.description.launches.python.conditions import (
     CONDITIONS,
     compared,
     connected,
     holds,
 )
-from cartwheel.description.launches.python_functions import (
+from cartwheel.description.launches.python.functions import (
     FIRST,
     JOINS,
     OUTPUTS,
@@ -43,9 +43,12 @@ from cartwheel.description.launches.python_functions import (
     SHARES,
     is_module,
 )
-from cartwheel.description.launches.python_imports import with_imports
+from cartwheel.description.launches.python.imports import with_imports
+from cartwheel.description.launches.python.modules import LOADER, Module, formatted
+from cartwheel.description.launches.python.texts import CHANGES, ChangedFile
 from cartwheel.description.launches.python_values import (
     NOTHING,
+    Changed,
     Configuration,
     Description,
     Unknown,
@@ -437,13 +440,15 @@ class _Reader:
             name = node.func.attr
             holder = self.value(node.func.value)
         conditions = [self.value(each.value) for each in node.keywords if each.arg == "condition"]
-        if any(each is False for each in conditions):
+        skipped = any(each is False for each in conditions)
+        if skipped and name not in CHANGES:
             self._facts.leaves_out = True
             self._skip(node)
             return NOTHING  # the action is not executed, nor are those in it
         doubt = any(each is not True and each is not None for each in conditions)
         with self._facts.doubting(doubt or name in _ON_OTHER_EVENTS):
-            return self._held_call(node, name if named else "", holder, later=later)
+            found = self._held_call(node, name if named else "", holder, later=later)
+        return found.source if skipped and isinstance(found, Changed) else found
 
     def _held_call(self, node: ast.Call, name: str, holder: Any, *, later: bool) -> Any:
         """The value of a call whose condition holds; its name is empty if it has none.
@@ -452,7 +457,7 @@ class _Reader:
         """
         space = self._facts.namespace
         is_kept = name in ("append", "extend") and isinstance(holder, list)
-        function = self._functions.get(name)
+        function = self._function(name, holder)
         if function is not None:
             places = self._elements(node.args, self.value)
         else:
@@ -469,9 +474,9 @@ class _Reader:
         )
         if not name:
             return NOTHING
-        if function is not None and isinstance(node.func, ast.Name):
+        if function is not None and (isinstance(node.func, ast.Name) or isinstance(holder, Module)):
             return self._called(function, places, words)
-        if name not in SAME and not is_kept:
+        if name not in SAME | CHANGES and not is_kept:
             for value in (*places, *words.values()):
                 start_all(value)
         if name == "GroupAction":
@@ -495,6 +500,9 @@ class _Reader:
             folder = self._facts.package(text(words.get("package", first)))
             # The files of a package are not in the folder in which it is installed.
             return NOTHING if self._facts.strict and name in PREFIXES else folder
+        if name in CHANGES:
+            make = functools.partial(self._changed, name, first, places, words, node.lineno)
+            return Changed(make, first)
         if name in SAME:
             return words if name == "dict" and words else first
         if name == "dirname":
@@ -504,6 +512,12 @@ class _Reader:
                 origin = Origin(file=shown_path(self._path), line=node.lineno)
                 self._facts.need("file", text(first), origin)
             return first if name == "open" else holder
+        if name == "format" and isinstance(holder, str):
+            return formatted(holder, places, words)
+        if name == LOADER:
+            return Module(Path(text(first)), self._facts.effort)
+        if name == "getattr" and isinstance(first, Module) and len(places) > 1:
+            return first.functions.get(text(places[1]), NOTHING)
         if name == "replace" and isinstance(holder, str) and is_known(*places[:1]):
             return self._replaced(holder, places, node.lineno)
         if name in ("process_file", "process", "process_doc"):
@@ -512,6 +526,9 @@ class _Reader:
                 origin = Origin(file=shown_path(self._path), line=node.lineno)
                 self._facts.need("file", text(first), origin)
             return self._processed(text(first), words.get("mappings", {}))
+        if name == "load_xacro":  # of launch_param_builder
+            mappings = words.get("mappings", places[1] if len(places) > 1 else {})
+            return self._processed(text(words.get("file_path", first)), mappings)
         if name in ("safe_load", "full_load", "load") and is_module(node.func, "yaml"):
             # A file that was opened is its path.
             return loaded(text(first), self._facts.effort)
@@ -525,6 +542,9 @@ class _Reader:
             return holder
         if name in ("lower", "upper") and is_known(holder):
             return holder.lower() if name == "lower" else holder.upper()
+        if name in ("dump", "safe_dump") and is_module(node.func, "yaml"):
+            self._facts.writes = True
+            return NOTHING
         if name in OUTPUTS:
             said = first if isinstance(first, list) else [first]
             origin = Origin(file=str(self._path), line=node.lineno)
@@ -550,6 +570,40 @@ class _Reader:
         self._classes.line = line
         with self._facts.doubting(doubt):
             return make()
+
+    def _function(self, name: str, holder: Any) -> ast.FunctionDef | None:
+        """The function that is called: one of the file, or one of an imported file."""
+        if isinstance(holder, Module):
+            return holder.functions.get(name)
+        if name in self._functions:
+            return self._functions[name]
+        held = self._names.get(name) if holder is NOTHING else None
+        return held if isinstance(held, ast.FunctionDef) else None
+
+    def _changed(
+        self, name: str, source: Any, places: list[Any], words: dict[str, Any], line: int
+    ) -> str:
+        """The path of a file whose text nav2_common or launch_ros changes."""
+        stated = joined(source)
+        file = ChangedFile(stated, self._facts.effort)
+        if name == "ParameterFile":
+            if words.get("allow_substs") is True:
+                file.substitute(lambda one: self._classes.configuration(one, [], {}))
+            return file.path
+        key = "replacements" if name == "ReplaceString" else "param_rewrites"
+        values = words.get(key, places[1] if len(places) > 1 else {})
+        known = isinstance(values, dict)
+        pairs = {str(old): new for old, new in values.items()} if isinstance(values, dict) else {}
+        if name == "ReplaceString":
+            file.replace(pairs)
+        else:
+            root = joined(words.get("root_key", places[2] if len(places) > 2 else ""))
+            known = known and UNKNOWN not in root and "key_rewrites" not in words
+            convert = words.get("convert_types", False) is True
+            file.rewrite(pairs, "" if UNKNOWN in root else root.strip("/"), convert=convert)
+        if (file.kept or not known) and UNKNOWN not in file.path:
+            self._facts.kept[file.path] = (self._path, line)
+        return file.path
 
     def _replaced(self, held: str, places: list[Any], line: int) -> str:
         """A text in which a launch file replaces parts. In that of a file, nothing is replaced.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cartwheel.description.files.package_folders import is_file, package_above, package_name
 from cartwheel.description.files.regular_files import read_regular_text
-from cartwheel.description.launches.python_actions import called_functions
+from cartwheel.description.launches.python.actions import called_functions
 from cartwheel.description.launches.use import Facts
 
 _MOST = 20

@@ -12,9 +12,11 @@ from cartwheel.description.launches.effort import UNKNOWN
 from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.python_values import (
     NOTHING,
+    Changed,
     Description,
     is_known,
     joined,
+    path_of,
     text,
 )
 from cartwheel.description.launches.spawning import resolved, split
@@ -130,6 +132,38 @@ class Classes:
             self.facts.required = required
         return NOTHING
 
+    def package_inclusion(self, first: Any, places: list[Any], words: dict[str, Any]) -> Any:
+        """Reads a launch file that is stated by its package and the parts of its path in it."""
+        parts = words.get("paths", places[1] if len(places) > 1 else NOTHING)
+        folder = self.facts.package(text(words.get("pkg_name", first)))
+        given = {name: words[name] for name in ("launch_arguments", UNKNOWN) if name in words}
+        return self.inclusion(path_of([folder, parts]), [], given)
+
+    def load_controller(self, first: Any, places: list[Any], words: dict[str, Any]) -> Any:
+        """Adds what the spawner of one controller starts."""
+        # Before Rolling of 2024, the type of the controller was the second argument.
+        files = [*places[1:], words.get("controller_params_file", NOTHING)]
+        given = {**words, "controller_params_files": [each for each in files if _is_yaml(each)]}
+        return self.load_controllers([words.get("controller_name", first)], [], given)
+
+    def load_controllers(self, first: Any, places: list[Any], words: dict[str, Any]) -> Any:
+        """Adds what the spawner of several controllers starts, whose names may be the keys of a
+        dictionary with their files.
+        """
+        names: Any = words.get("controller_names", words.get("controller_info_dict", first))
+        files: Any = words.get("controller_params_files", places[1] if len(places) > 1 else [])
+        if isinstance(names, dict):
+            names, files = [*names], [*names.values()]
+        more = words.get("extra_spawner_args", [])
+        lists = [each if isinstance(each, list) else [NOTHING] for each in (names, files, more)]
+        flags = [part for each in _flat(lists[1]) for part in ("--param-file", each)]
+        spawner = {
+            "package": "controller_manager",
+            "executable": "spawner",
+            "arguments": [*lists[0], *flags, *lists[2]],
+        }
+        return self.node(NOTHING, [], spawner)
+
     def push(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Enters a namespace, until the end of the group."""
         stated = joined(words.get("namespace", first))
@@ -179,7 +213,7 @@ class Classes:
                 self._publish(space, each, remappings)
                 if package in BRIDGES and "config_file" in each:
                     self.facts.bridge(joined(each["config_file"]))
-            elif package == "controller_manager" and isinstance(each, str | list):
+            elif package == "controller_manager" and isinstance(each, str | list | Changed):
                 self.facts.parameters(joined(each))
         return NOTHING
 
@@ -199,6 +233,10 @@ class Classes:
             number = self.facts.add(Path(value), {})
         self.facts.store_topic(space, number, remappings)
 
+    def place(self, _first: Any, _places: list[Any], _words: dict[str, Any]) -> Any:
+        """The folder of the launch file."""
+        return str(self.path.parent)
+
     def process(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds what a command starts."""
         parts = words.get("cmd", first)
@@ -207,6 +245,16 @@ class Classes:
             origin = Origin(file=str(self.path), line=self.line)
             self.facts.command(split(said[0]) if len(said) == 1 else said, origin)
         return NOTHING
+
+
+def _is_yaml(value: Any) -> bool:
+    return joined(value).endswith((".yaml", ".yml"))
+
+
+def _flat(files: list[Any]) -> list[Any]:
+    """The known files in a list that may contain lists of them."""
+    listed = [each for one in files for each in (one if isinstance(one, list) else [one])]
+    return [each for each in listed if _is_yaml(each)]
 
 
 CLASSES: Mapping[str, Callable[[Classes, Any, list[Any], dict[str, Any]], Any]] = {
@@ -222,5 +270,12 @@ CLASSES: Mapping[str, Callable[[Classes, Any, list[Any], dict[str, Any]], Any]] 
     "PythonExpression": Classes.expression,
     "RosGzBridge": Classes.bridge,
     "SetLaunchConfiguration": Classes.setting,
+    "ThisLaunchFileDir": Classes.place,
+    # Functions of controller_manager.launch_utils and launch_pal.
+    "generate_controllers_spawner_launch_description": Classes.load_controllers,
+    "generate_controllers_spawner_launch_description_from_dict": Classes.load_controllers,
+    "generate_load_controller_launch_description": Classes.load_controller,
+    "include_launch_py_description": Classes.package_inclusion,
+    "read_launch_argument": Classes.configuration,
 }
 """What each class means. Those that call functions of the file are not among them."""

@@ -1,0 +1,1 @@
+"""Reads launch files in Python by their syntax tree."""
