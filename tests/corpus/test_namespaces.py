@@ -182,3 +182,28 @@ def generate_launch_description():
     verdict = try_robot(robot, standing=1.0)
     assert {each.source for each in verdict.faults} == {"unknown" if writes else "file"}
     assert (CONTROLLER_UNDEFINED in {each.code for each in verdict.faults}) == (not writes)
+
+
+@pytest.mark.parametrize("passed", [False, True])
+def test_a_spawner_may_load_a_file_that_the_manager_lacks(tmp_path, passed):
+    """The file in the tag of the plugin then contains only parameters of the manager."""
+    text = controlled(tmp_path)
+    (tmp_path / "base.yaml").rename(tmp_path / "drive.yaml")
+    (tmp_path / "base.yaml").write_text("controller_manager: {ros__parameters: {update_rate: 90}}")
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "package.xml").write_text("<package><name>cart</name></package>")
+    robot = written(tmp_path, cart(), text)
+    (tmp_path / "launch").mkdir()
+    more = f', "--param-file", "{tmp_path}/drive.yaml"' if passed else ""
+    (tmp_path / "launch" / "sim.launch.py").write_text(f"""
+def generate_launch_description():
+    robot = open("{robot}").read()
+    return LaunchDescription([
+        Node(package="robot_state_publisher", parameters=[{{"robot_description": robot}}]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+        Node(package="controller_manager", executable="spawner", arguments=["base"{more}]),
+    ])
+""")
+    verdict = try_robot(robot, standing=1.0)
+    assert verdict.good == passed
+    assert verdict.controllers == (("base",) if passed else ())

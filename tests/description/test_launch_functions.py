@@ -191,4 +191,15 @@ def test_a_launch_file_that_writes_yaml_may_write_controllers(tmp_path, call):
     )
     use = chosen(package(tmp_path, text), launches_near(tmp_path))
     assert use is not None
-    assert use.writes == ("dump" in call)
+    assert use.incomplete == ("dump" in call)
+
+
+@pytest.mark.parametrize(
+    ("words", "stated"),
+    [('"a", "-t", "x/X"', True), ('"a", "--controller-type", "x/X"', True), ('"a"', False)],
+)
+def test_types_that_a_launch_file_states_may_not_be_in_its_files(tmp_path, words, stated):
+    spawner = f'Node(package="controller_manager", executable="spawner", arguments=[{words}])'
+    use = used(tmp_path, LOADED, spawner)
+    assert use.incomplete == stated
+    assert use.spawned == ("a",)

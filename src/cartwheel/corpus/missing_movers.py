@@ -165,8 +165,8 @@ def missing_movers(
         reason = reason or most_severe(
             each for each in said if each.code in codes and _concerns(each, tag)
         )
-        # A launch file may write the controllers when it is executed.
-        sure = verdict.launch is None or not verdict.launch.writes
+        # Only the execution of a launch file may determine its controllers.
+        sure = verdict.launch is None or not verdict.launch.incomplete
         if reason is None and not undefined and unread is None:
             reason = _uncommanded(verdict, tag)
         if reason is not None:

@@ -104,8 +104,9 @@ class LaunchUse:
     places: tuple[tuple[str, Path], ...] = ()
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""
-    writes: bool = False
-    """Whether it writes a YAML file when it is executed, which may contain controllers."""
+    incomplete: bool = False
+    """Whether its files may lack controllers that it starts: it writes a YAML file when it is
+    executed, or states the type of a controller to a spawner."""
     lacking: bool = False
     """Whether an argument has neither a default nor a value. ROS does not start it without one."""
     simulated: bool = False

@@ -63,6 +63,8 @@ _STARTERS: Mapping[tuple[str, str], tuple[str, ...]] = {
 """The arguments that name the world, of the launch files of these packages that start Gazebo."""
 _PRINTING = frozenset({"xacro", "xacro.py", "cat"})
 """Commands that fail if their file does not exist."""
+_TYPES = frozenset({"-t", "--controller-type"})
+"""Options of spawners that state the type of a controller."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
 _HARDWARE = re.compile(r"control_node|ros2?_control|hardware|driver|(?<![a-z])hw(?![a-z])")
 """Parts of the names of programs that may run a controller manager outside of Gazebo."""
@@ -171,8 +173,8 @@ class Facts:
     """The arguments of the launch file itself that have their default, such as the robot's type."""
     choices: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """Their values that are stated to be valid."""
-    writes: bool = False
-    """See `LaunchUse.writes`."""
+    incomplete: bool = False
+    """See `LaunchUse.incomplete`."""
     leaves_out: bool = False
     """Whether a condition that does not hold leaves out a part."""
     strict: bool = False
@@ -435,6 +437,7 @@ class Facts:
             self.effort.spend(len(words) + len(remappings))
             self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
+            self.incomplete |= not _TYPES.isdisjoint(words)
             command = by_spawner(words, space)
             self._control(command)
             # The spawner of Foxy does not use the namespace of its node.

@@ -57,7 +57,8 @@ def suggested(
 ) -> list[Path]:
     """Returns the controller files near a robot whose controller manager has none.
 
-    Returns nothing if the manager's tag contains an existing file. Files near the robot with
+    Returns nothing if the manager's tag contains an existing file, unless that contains no
+    controller, and a launch file passes files with some to spawners. Files near the robot with
     controllers for wheels that a plugin drives are left out, because both would command the wheels.
     Those that a launch file starts command them in Gazebo as well.
 
@@ -79,9 +80,10 @@ def suggested(
     }
     movable = [each.name for each in robot.joints if each.type != "fixed"]
     joints = [name for name in movable if name not in driven]
-    if not lacks_controllers(robot):
-        return []
     managers = [tag for tag in robot.plugins if _manager(tag)]
+    has_own = not lacks_controllers(robot) and (among is None or _has_entries(robot))
+    if not managers or has_own:
+        return []
     ros2 = _manager(managers[0]) != ROS_CONTROL
     if among is not None:
         return with_controllers(among, movable if started else joints, ros2=ros2)
@@ -252,6 +254,23 @@ def _has_files(tag: PluginTag) -> bool:
         stated_path(each.text, tag.origin).is_file() or moved_file(each.text, tag.origin)[0]
         for each in tag.element.find_all("parameters")
     )
+
+
+def _has_entries(robot: RobotDescription) -> bool:
+    """Whether the files in the tags of the controller managers contain controllers, as far as they
+    can be read.
+    """
+    for tag in filter(_manager, robot.plugins):
+        for each in tag.element.find_all("parameters"):
+            path = stated_path(each.text, tag.origin)
+            path = path if path.is_file() else moved_file(each.text, tag.origin)[0] or path
+            try:
+                content = read_parameters(path)
+            except PluginError:
+                return True
+            if _entries(content, str(path), ros2=is_ros2(content)):
+                return True
+    return False
 
 
 def _entries(content: Mapping[str, Any], source: str, *, ros2: bool) -> list[ControllerEntry]:

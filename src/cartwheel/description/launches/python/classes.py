@@ -144,6 +144,7 @@ class Classes:
         # Before Rolling of 2024, the type of the controller was the second argument.
         files = [*places[1:], words.get("controller_params_file", NOTHING)]
         given = {**words, "controller_params_files": [each for each in files if _is_yaml(each)]}
+        self.facts.incomplete |= "controller_type" in words
         return self.load_controllers([words.get("controller_name", first)], [], given)
 
     def load_controllers(self, first: Any, places: list[Any], words: dict[str, Any]) -> Any:

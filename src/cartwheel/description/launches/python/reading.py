@@ -543,7 +543,7 @@ class _Reader:
         if name in ("lower", "upper") and is_known(holder):
             return holder.lower() if name == "lower" else holder.upper()
         if name in ("dump", "safe_dump") and is_module(node.func, "yaml"):
-            self._facts.writes = True
+            self._facts.incomplete = True
             return NOTHING
         if name in OUTPUTS:
             said = first if isinstance(first, list) else [first]

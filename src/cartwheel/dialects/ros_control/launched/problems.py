@@ -88,7 +88,7 @@ def undefined(
 ) -> Iterator[Diagnostic]:
     """Controllers that a launch file starts, but that no file near it or the robot defines."""
     folder = within or root_of(Path(robot.origin.file))
-    if starter is None or not starter.spawned or starter.writes or folder is None:
+    if starter is None or not starter.spawned or starter.incomplete or folder is None:
         return
     inside = starter.file.absolute().is_relative_to(folder)
     roots = dict.fromkeys((folder, folder if inside else root_of(starter.file) or folder))
