@@ -201,5 +201,5 @@ def test_a_launch_file_that_writes_yaml_may_write_controllers(tmp_path, call):
 def test_types_that_a_launch_file_states_may_not_be_in_its_files(tmp_path, words, stated):
     spawner = f'Node(package="controller_manager", executable="spawner", arguments=[{words}])'
     use = used(tmp_path, LOADED, spawner)
-    assert use.incomplete == stated
+    assert use.typed == ({"a"} if stated else set())
     assert use.spawned == ("a",)

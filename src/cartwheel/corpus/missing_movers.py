@@ -159,6 +159,7 @@ def missing_movers(
     for each in undefined:
         name, sure = str(each.values["controller"]), not each.values.get("foreign")
         yield Fault(test="controller", subject=name, reason=each, sure=sure)
+    use = verdict.launch
     for tag in managers(description, jointless=bool(replaced)):
         # Without its manager, it does not matter what else is wrong.
         reason = _not_started(description, tag, findings) or most_severe(stopped)
@@ -166,7 +167,7 @@ def missing_movers(
             each for each in said if each.code in codes and _concerns(each, tag)
         )
         # Only the execution of a launch file may determine its controllers.
-        sure = verdict.launch is None or not verdict.launch.incomplete
+        sure = use is None or not (use.incomplete or use.typed)
         if reason is None and not undefined and unread is None:
             reason = _uncommanded(verdict, tag)
         if reason is not None:

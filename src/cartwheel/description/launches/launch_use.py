@@ -105,8 +105,7 @@ class LaunchUse:
     """The files of `controllers`, each with the namespace into which ROS 1 loads it; `UNKNOWN` if
     it is uncertain."""
     incomplete: bool = False
-    """Whether its files may lack controllers that it starts: it writes a YAML file when it is
-    executed, or states the type of a controller to a spawner."""
+    """Whether its files may lack controllers, because it writes a YAML file when it is executed."""
     lacking: bool = False
     """Whether an argument has neither a default nor a value. ROS does not start it without one."""
     simulated: bool = False

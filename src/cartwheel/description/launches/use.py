@@ -63,8 +63,6 @@ _STARTERS: Mapping[tuple[str, str], tuple[str, ...]] = {
 """The arguments that name the world, of the launch files of these packages that start Gazebo."""
 _PRINTING = frozenset({"xacro", "xacro.py", "cat"})
 """Commands that fail if their file does not exist."""
-_TYPES = frozenset({"-t", "--controller-type"})
-"""Options of spawners that state the type of a controller."""
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager"})
 _HARDWARE = re.compile(r"control_node|ros2?_control|hardware|driver|(?<![a-z])hw(?![a-z])")
 """Parts of the names of programs that may run a controller manager outside of Gazebo."""
@@ -437,7 +435,6 @@ class Facts:
             self.effort.spend(len(words) + len(remappings))
             self.renamed += renamed_topics(words, space, remappings, self.file)
         if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
-            self.incomplete |= not _TYPES.isdisjoint(words)
             command = by_spawner(words, space)
             self._control(command)
             # The spawner of Foxy does not use the namespace of its node.

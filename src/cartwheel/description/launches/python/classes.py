@@ -144,7 +144,10 @@ class Classes:
         # Before Rolling of 2024, the type of the controller was the second argument.
         files = [*places[1:], words.get("controller_params_file", NOTHING)]
         given = {**words, "controller_params_files": [each for each in files if _is_yaml(each)]}
-        self.facts.incomplete |= "controller_type" in words
+        if "controller_type" in words:
+            more = words.get("extra_spawner_args", [])
+            kind = ["--controller-type", words["controller_type"]]
+            given["extra_spawner_args"] = [*(more if isinstance(more, list) else []), *kind]
         return self.load_controllers([words.get("controller_name", first)], [], given)
 
     def load_controllers(self, first: Any, places: list[Any], words: dict[str, Any]) -> Any:

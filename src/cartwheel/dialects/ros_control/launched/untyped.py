@@ -45,7 +45,7 @@ def _untyped(robot: RobotDescription, starter: LaunchUse | None) -> Iterator[Dia
     tags = [tag for tag in robot.plugins if "ros2_control" in short_name(tag.filename)]
     if starter is None or not starter.spawned or len(tags) != 1:
         return
-    if starter.managers or starter.absent or starter.unsure:
+    if starter.managers or starter.absent or starter.unsure or starter.incomplete:
         return
     files = _files(tags[0])
     if not files:
