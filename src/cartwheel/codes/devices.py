@@ -351,3 +351,9 @@ MANAGER_STARTED_TWICE = Code(
     "warning",
     "a launch file starts a second controller manager with the same name",
 )
+SENSOR_REFUSED = Code(
+    "CW499",
+    "sensor-refused",
+    "error",
+    "a plugin does not accept the type of its sensor",
+)

@@ -42,6 +42,7 @@ from cartwheel.corpus.movers import LEFT_OUT, dropped_joints, moves_nothing
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.model import RobotDescription
+from cartwheel.dialects.classic.refusals import refusals
 from cartwheel.errors import Diagnostic
 
 _HEAVY = 1000.0
@@ -438,7 +439,10 @@ def _too_slow(found: Sequence[Diagnostic], ratio: float) -> Diagnostic | None:
 def _unpublished(
     verdict: Verdict, description: RobotDescription, findings: Callable[[], Sequence[Diagnostic]]
 ) -> Iterator[Diagnostic]:
-    """Why gz-sim does not publish some sensors, which Cartwheel does in any world."""
+    """Why Gazebo does not publish some sensors, which Cartwheel does in any world and with any type
+    that a sensor has.
+    """
+    yield from refusals(description)
     sensors = any(link.sensors for link in description.links)
     if sensors and (verdict.model or verdict.launch is not None):
         yield from (each for each in findings() if each.code is devices.SENSOR_SYSTEM_MISSING)

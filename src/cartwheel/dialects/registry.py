@@ -17,6 +17,7 @@ from cartwheel.dialects.catalogue import (
     short_name,
     unloadable,
 )
+from cartwheel.dialects.classic.refusals import refusal
 from cartwheel.dialects.gz.sensor_tags import own_tag, publishes
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
@@ -80,6 +81,9 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             elif plugin.for_world or (plugin.for_sensor and sensor is None):
                 part.report(misplaced(tag, "world" if plugin.for_world else "sensor"))
             else:
+                wrong = None if sensor is None else refusal(part.description, tag, sensor)
+                if wrong is not None:
+                    part.report(wrong)
                 forgiven = _ANY if lenient or own_system else _HARMLESS
                 plugins += create(
                     part, shared, plugin, tag, sensor,

@@ -1,4 +1,4 @@
-"""Types of sensors."""
+"""Types of sensors, and plugins that do not accept them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.sensor_ranges import sensors_of
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.dialects.classic.refusals import refusals
 from cartwheel.errors import Diagnostic
 
 TYPES = (
@@ -20,6 +21,12 @@ TYPES = (
     "wireless_receiver", "wireless_transmitter",
 )  # fmt: skip
 """Sensor types up to SDF 1.11."""
+
+
+@rule(devices_codes.SENSOR_REFUSED)
+def sensor_refused(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        yield from refusals(robot.description)
 
 
 @rule(devices_codes.SENSOR_TYPE_UNKNOWN)
