@@ -215,3 +215,20 @@ def test_a_function_that_nothing_calls_stops_nothing(bot: Path) -> None:
     unused = 'def unused():\n    open(get_package_share_directory("bot") + "/box.urdf")\n'
     file.write_text(unused + file.read_text())
     assert missing(bot) == []
+
+
+def test_what_depends_on_the_value_for_another_robot_is_not_certain(bot: Path) -> None:
+    text = SPAWN.replace("bot.urdf", "$(arg kind).urdf")
+    start = START.format("$(find bot)/worlds/$(arg kind).world")
+    (bot / "worlds/small.world").write_text("<sdf version='1.6'><world name='w'/></sdf>")
+    for name in ("small", "large"):
+        (bot / f"urdf/{name}.urdf").write_text(BOT)
+    launch = bot / "launch/a.launch"
+    kind = '<arg name="kind" default="small"/>'
+    launch.write_text(f"<launch>{kind}{start}{text}</launch>")
+    uses = {each.description: each.stopped for each in launches_near(bot) if each.simulated}
+    assert uses[bot / "urdf/small.urdf"] == uses[bot / "urdf/large.urdf"] == ()
+    (bot / "worlds/small.world").unlink()
+    launch.write_text(f"<launch>{kind}{start}{START.format('hall')}{text}</launch>")
+    found = {each.description: each.stopped for each in launches_near(bot) if each.simulated}
+    assert [len(found[bot / f"urdf/{name}.urdf"]) for name in ("small", "large")] == [2, 1]

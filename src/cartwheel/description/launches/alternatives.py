@@ -71,13 +71,15 @@ def uses_with_others(path: Path, packages: Packages, effort: Effort) -> Iterator
             # The same one is for all robots.
             switch, sought = _switch(path, packages, other, given, effort), True
         found = [each for each in uses_of(path, other, given.values()) if each.description in new]
-        for use in needed(found, given):
+        # What depends on these values is not certain, because nobody states them.
+        guessed = dict.fromkeys(given, UNKNOWN)
+        for use in needed(found, guessed):
             yield _without_defaults(use, facts.defaults) if use.guessed else use
         if switch:
             both = facts_of(path, packages, {**given, **switch}, effort)
             uses = _switched(path, both, switch, given.values())
             yield from needed(
-                [each for each in uses if each.description in new], {**given, **switch}
+                [each for each in uses if each.description in new], {**guessed, **switch}
             )
 
 
