@@ -104,13 +104,17 @@ def is_started(controller: str, verdict: Verdict) -> bool:
 
 
 def _is_undefined(each: Diagnostic, verdict: Verdict) -> bool:
-    """Whether the launch file that starts the robot starts a controller without parameters."""
+    """Whether the launch file that starts the robot, and no other one, starts a controller without
+    parameters.
+    """
     if each.code is not devices.CONTROLLER_UNDEFINED or is_misplaced(each):
         return False
     if "untyped" in each.values:
         return True
     use, origin = verdict.launch, each.origin
-    return use is not None and origin is not None and origin.file == shown_path(use.file)
+    if use is None or use.several or origin is None:
+        return False
+    return origin.file == shown_path(use.file)
 
 
 def is_misplaced(each: Diagnostic) -> bool:

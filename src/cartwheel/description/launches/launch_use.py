@@ -97,8 +97,11 @@ class LaunchUse:
     is among them if one is uncertain."""
     sure_managers: frozenset[str] = field(default=frozenset(), compare=False)
     """Those about which no unknown condition decides."""
+    several: bool = field(default=False, compare=False)
+    """Whether it spawns several models, or names several descriptions. Its controllers may be those
+    of another one."""
     alone: bool = False
-    """Whether it spawns a model, names no other description, starts no program that may be a
+    """Whether it spawns a single model, names no other description, starts no program that may be a
     controller manager by its name, and includes no launch file that was not found, apart from those
     of Gazebo."""
     places: tuple[tuple[str, Path], ...] = ()

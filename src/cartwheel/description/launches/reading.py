@@ -61,7 +61,9 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
     found = []
     spawned = tuple(dict.fromkeys(name for _, name in facts.spawned))
     shown = _only_shown(facts)
-    alone = facts.spawning and not facts.partial and len({file for file, _ in described}) == 1
+    models = {(each.source, each.file, each.model) for each in facts.spawns}
+    several = max(len(models), len({file for file, _ in described})) > 1
+    alone = bool(facts.descriptions) and facts.spawning and not (facts.partial or several)
     worlds = tuple(map(facts.found_world, dict.fromkeys(facts.gazebos.worlds)))
     for number, (description, arguments) in enumerate(described):
         known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
@@ -89,6 +91,7 @@ def uses_of(path: Path, facts: Facts, words: Collection[str] = ()) -> list[Launc
                 managers=frozenset(facts.managers),
                 sure_managers=frozenset(one for one, sure in facts.managers.items() if sure),
                 alone=alone,
+                several=several,
                 places=tuple(dict.fromkeys(facts.places)),
                 incomplete=facts.incomplete,
                 lacking=bool(facts.required),

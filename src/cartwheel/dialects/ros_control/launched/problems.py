@@ -214,11 +214,13 @@ def _unmanaged(
         for each in (use.sought_in_ros2 if ros2 else use.sought)
         if each[0].strip("/") == manager
     }
+    # Another model of the launch file may have a manager in its own namespace.
+    others = {each.strip("/") for each in starter.spaces} if starter.several else set[str]()
     apart: dict[str, dict[str, None]] = {}
     programs: dict[str, str] | None = None
     for space, name in starter.sought_in_ros2 if ros2 else starter.sought:
         is_global = name.startswith(f"{manager}/")
-        is_other = space.strip("/") != manager and space.strip("/") not in starter.managers
+        is_other = space.strip("/") not in (manager, *starter.managers, *others)
         if is_other and (manager, name) not in known and not is_global:
             programs = own_managers(starter) if programs is None else programs
             if space.strip("/") in programs or UNKNOWN in programs:

@@ -36,7 +36,7 @@ def _untyped(robot: RobotDescription, starter: LaunchUse | None) -> Iterator[Dia
     """Controllers that a launch file starts, but whose type is in none of the files that the robot
     and the launch file name. The controller manager does not load them.
 
-    Nothing is known if one of these files cannot be read, or if there is another manager.
+    Nothing is known if one of these files cannot be read, or if there is another manager or robot.
 
     Args:
         robot: The robot, whose controller manager is of ROS 2.
@@ -45,7 +45,13 @@ def _untyped(robot: RobotDescription, starter: LaunchUse | None) -> Iterator[Dia
     tags = [tag for tag in robot.plugins if "ros2_control" in short_name(tag.filename)]
     if starter is None or not starter.spawned or len(tags) != 1:
         return
-    if starter.managers or starter.absent or starter.unsure or starter.incomplete:
+    if (
+        starter.several
+        or starter.managers
+        or starter.absent
+        or starter.unsure
+        or starter.incomplete
+    ):
         return
     files = _files(tags[0])
     if not files:
