@@ -140,6 +140,10 @@ def test_a_missing_mesh_of_another_link_stays_the_reason(tmp_path):
     assert stand.code is FILE_MISSING
 
 
+SDF_BODY = (
+    '<inertial><mass>1</mass></inertial><collision name="c"><geometry><box>'
+    "<size>0.1 0.1 0.1</size></box></geometry></collision>"
+)
 LEG = """<include><uri>model://absent/leg</uri>{name}</include>
 <joint name="hip" type="fixed"><parent>body</parent><child>{instance}::{link}</child></joint>
 <plugin name="p" filename="gz-sim-joint-position-controller-system">
@@ -182,6 +186,25 @@ def test_a_body_may_be_in_a_model_that_was_not_found_and_a_sensor_carries_none(
     )
     (fault,) = try_robot(path, standing=0.5).faults
     assert (fault.test, fault.source) == ("stand", reason)
+
+
+def test_a_plugin_may_be_for_what_a_merged_model_contains(tmp_path):
+    path = tmp_path / "model.sdf"
+    path.write_text(
+        f'<sdf version="1.9"><model name="robot"><link name="body">{SDF_BODY}</link>'
+        '<include merge="true"><uri>model://no_such_base</uri></include>'
+        '<plugin name="p" filename="gz-sim-joint-position-controller-system">'
+        "<joint_name>knee</joint_name></plugin></model></sdf>"
+    )
+    (fault,) = try_robot(path, standing=0.5).faults
+    assert (fault.test, fault.code, fault.source) == ("plugin", FILE_MISSING, "unknown")
+
+
+def test_a_collision_of_a_package_that_is_not_here_is_no_fault_of_the_file(tmp_path):
+    mesh = '<collision><geometry><mesh filename="package://no_such_meshes/base.stl"/></geometry>'
+    body = f'<link name="base">{MASS}{mesh}</collision></link>'
+    (fault,) = try_robot(written(tmp_path, body, FOR_GAZEBO), standing=1.0).faults
+    assert (fault.test, fault.code, fault.source) == ("stand", FILE_MISSING, "unknown")
 
 
 @pytest.mark.parametrize("end", ["jinja", "erb", "in"])

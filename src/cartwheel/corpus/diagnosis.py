@@ -49,6 +49,8 @@ _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
 """Lengths in other units, with which shapes are inside each other or kilometres long."""
+_LACKING = frozenset({running.PLUGIN_LEFT_OUT, running.CONTROLLER_NOT_STARTED})
+"""A plugin or controller that does not start, perhaps because what it names is in another file."""
 _UNLIMITED = frozenset({robot.LIMIT_MISSING})
 """For a URDF, neither ROS nor Gazebo loads the robot."""
 _NOT_EXPANDED = frozenset({files.DESCRIPTION_NOT_EXPANDED})
@@ -107,8 +109,12 @@ def faults(
     none = True
     for fault in _faults(verdict, description, findings):
         none = False
-        absent = None if fault.reason is None else _absent_model(fault.reason, description)
-        yield fault if absent is None else replace(fault, reason=absent)
+        absent = None if fault.reason is None else _absent_part(fault.reason, description)
+        if absent is None:
+            yield fault
+        else:
+            outside = is_lost_model(absent) or absent.values.get("package")
+            yield replace(fault, reason=absent, sure=fault.sure and not outside)
     if none:
         yield from _lost_parts(description)
 
@@ -119,24 +125,29 @@ def _lost_parts(description: RobotDescription) -> Iterator[Fault]:
     What they would add to the robot may work or not.
     """
     for each in description.diagnostics:
-        called = each.code is files.MACRO_ABSENT and each.values.get("package")
-        if called or is_lost_model(each):
+        if _is_lost_part(each):
             yield Fault(test="load", subject=str(each.values["name"]), reason=each, sure=False)
 
 
-def _absent_model(reason: Diagnostic, description: RobotDescription) -> Diagnostic | None:
-    """The include of the model that would contain what does not exist, such as ``leg::knee``."""
+def _is_lost_part(each: Diagnostic) -> bool:
+    """Whether it is a macro or model that is left out, because its file is not here."""
+    called = each.code is files.MACRO_ABSENT and bool(each.values.get("package"))
+    return called or is_lost_model(each)
+
+
+def _absent_part(reason: Diagnostic, description: RobotDescription) -> Diagnostic | None:
+    """The model or macro that is left out, and would contain what does not exist.
+
+    The name of what is in a model is scoped, as in ``leg::knee``, unless the model is merged.
+    """
+    lost = [each for each in description.diagnostics if is_lost_model(each)]
     model, inside, _ = str(reason.values.get("name", "")).partition("::")
-    if not inside:
-        return None
-    return next(
-        (
-            each
-            for each in description.diagnostics
-            if each.values.get("left_out") == "include" and each.values.get("instance") == model
-        ),
-        None,
-    )
+    named = (each for each in lost if inside and each.values.get("instance") == model)
+    found = next(named, None)
+    if inside or reason.values.get("meant") or reason.code not in _LACKING:
+        return found
+    parts = (each for each in description.diagnostics if _is_lost_part(each))
+    return next(parts, None) if reason.values.get("kind") else None
 
 
 def _faults(

@@ -98,7 +98,7 @@ class Fault:
         if self.reason is None or not self.sure or self.code in _OURS:
             return "unknown"
         outside = _is_outside(self.reason)
-        if outside == "model" or (outside and self.test == "load"):
+        if outside in ("model", "package") or (outside and self.test == "load"):
             return "unknown"
         if self.reason.values.get("template"):
             # A build makes the file that is missing.

@@ -7,6 +7,7 @@ import pytest
 from tests.coded import named, raises
 
 from cartwheel.codes import files
+from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.description.files import package_folders, package_search
 from cartwheel.description.files import packages as packages_module
 from cartwheel.description.files.package_folders import share
@@ -32,6 +33,19 @@ def robot(folder):
 
 def packages(file, environment=None, **more):
     return Packages(file, environment=environment or {}, **more)
+
+
+@pytest.mark.parametrize("scheme", ["models", "gz"])
+def test_gz_sim_finds_a_model_whatever_the_scheme_is(tmp_path, scheme):
+    own = package(tmp_path / "ws" / "src" / "a")
+    mesh = own / "models" / "car" / "body.stl"
+    mesh.parent.mkdir(parents=True)
+    mesh.touch()
+    found, uri = packages(robot(own)), f"{scheme}://car/body.stl"
+    assert found.resolve(uri, HERE) == mesh
+    assert found.found_elsewhere[uri].path == mesh
+    with raises(VALUE_INVALID):
+        found.resolve(f"{scheme}://car/wheel.stl", HERE)
 
 
 def test_own_package_by_the_name_in_its_manifest(tmp_path):

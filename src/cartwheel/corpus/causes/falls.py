@@ -7,7 +7,7 @@ from collections.abc import Sequence, Set
 
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links
-from cartwheel.codes import devices, files, robot
+from cartwheel.codes import devices, files, robot, tags
 from cartwheel.corpus.faults import coded, is_lost_model, most_severe
 from cartwheel.corpus.movers import LEFT_OUT, may_move
 from cartwheel.corpus.verdict import Stand, Verdict
@@ -29,7 +29,14 @@ _STANDING = frozenset(
         robot.JOINTS_UNDRIVEN,
     }
 )
-_ABSENT = frozenset({files.FILE_MISSING, files.FILE_ON_NETWORK, files.MESH_UNREADABLE})
+_ABSENT = frozenset(
+    {
+        files.FILE_MISSING,
+        files.FILE_ON_NETWORK,
+        files.MESH_UNREADABLE,
+        tags.VALUE_INVALID,
+    }
+)
 """Reasons why a shape is missing."""
 _LACKING = frozenset(
     {

@@ -6,6 +6,7 @@ Then the environment variables of ROS 1, ROS 2 and Gazebo are used.
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -312,6 +313,14 @@ class Packages:
                 return known is not None and real(known) == folder and is_below(path, folder)
         return False
 
+    def _of_any_scheme(self, uri: str, rest: str, origin: Origin | None) -> Iterator[Path]:
+        """The file that gz-sim finds in folders of models, whatever the scheme of a URI is."""
+        with contextlib.suppress(DescriptionError):
+            for path in self._candidates(f"model://{rest}", origin):
+                if is_file(path):
+                    self.found_elsewhere.setdefault(uri, Moved(path=path, origin=origin, use=""))
+                    yield path
+
     def _candidates(self, uri: str, origin: Origin | None) -> Iterator[Path]:
         uri = FIND.sub(lambda match: str(self.find(match[1], origin)), uri)
         scheme, separator, rest = uri.partition("://")
@@ -335,6 +344,7 @@ class Packages:
             return
         name, _, path = rest.partition("/")
         if scheme not in ("package", "model"):
+            yield from self._of_any_scheme(uri, rest, origin)
             raise DescriptionError(
                 f'"{uri}" has the unknown scheme "{scheme}"',
                 code=VALUE_INVALID,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from cartwheel.codes import files, robot
 from cartwheel.codes import tags as tag_codes
@@ -58,9 +59,9 @@ def read_urdf(
             f"expected <robot>, but the file begins with <{root.tag}>",
             code=files.NOT_A_DESCRIPTION,
         )
-    name = _name(root)
     root.get("version")
     ctx = UrdfContext(packages=packages, diagnostics=list(diagnostics))
+    name = _name(root, ctx)
     ctx.diagnostics.extend(refusals(root))
     ctx.diagnostics.extend(cut_links(root))
     read_materials(root, ctx)
@@ -135,7 +136,19 @@ def read_urdf(
     )
 
 
-def _name(root: Node) -> str:
+def _name(root: Node, ctx: UrdfContext) -> str:
+    """The name of a robot; that of its file if it is empty, which ROS and Gazebo accept."""
+    if root.attributes.get("name", "unnamed").strip() == "":
+        root.get("name")
+        name = Path(root.origin.file).name.partition(".")[0] or "robot"
+        ctx.warn(
+            tag_codes.TAG_MISSING,
+            f'the attribute "name" of <robot> is empty, so "{name}" is used',
+            origin=root.origin,
+            severity="warning",
+            values={"missing": "name"},
+        )
+        return name
     if "name" not in root.attributes and not root.all("link"):
         raise root.fail(
             "<robot> has neither a name nor links",
