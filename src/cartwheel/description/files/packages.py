@@ -313,14 +313,6 @@ class Packages:
                 return known is not None and real(known) == folder and is_below(path, folder)
         return False
 
-    def _of_any_scheme(self, uri: str, rest: str, origin: Origin | None) -> Iterator[Path]:
-        """The file that gz-sim finds in folders of models, whatever the scheme of a URI is."""
-        with contextlib.suppress(DescriptionError):
-            for path in self._candidates(f"model://{rest}", origin):
-                if is_file(path):
-                    self.found_elsewhere.setdefault(uri, Moved(path=path, origin=origin, use=""))
-                    yield path
-
     def _candidates(self, uri: str, origin: Origin | None) -> Iterator[Path]:
         uri = FIND.sub(lambda match: str(self.find(match[1], origin)), uri)
         scheme, separator, rest = uri.partition("://")
@@ -344,7 +336,11 @@ class Packages:
             return
         name, _, path = rest.partition("/")
         if scheme not in ("package", "model"):
-            yield from self._of_any_scheme(uri, rest, origin)
+            # gz-sim finds it in folders of models, whatever the scheme is.
+            with contextlib.suppress(DescriptionError):
+                for found in filter(is_file, self._candidates(f"model://{rest}", origin)):
+                    self.found_elsewhere.setdefault(uri, Moved(path=found, origin=origin, use=""))
+                    yield found
             raise DescriptionError(
                 f'"{uri}" has the unknown scheme "{scheme}"',
                 code=VALUE_INVALID,
