@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from cartwheel import yaml_text
 from cartwheel.codes import devices
 from cartwheel.dialects.ros2_control.mistyped import mistyped, mistyped_manager
 from cartwheel.dialects.ros2_control.refused_files import refused_file
@@ -120,6 +121,35 @@ def test_a_value_of_the_declared_type_or_of_an_unknown_one_is_not_reported(kind,
     inner = line.strip("{}").split(", ") if line.startswith("{") else [line]
     assert wrong(written(tmp_path, kind, *inner)) == []
     assert path.is_file()
+
+
+@pytest.mark.parametrize(
+    ("kind", "line", "found"),
+    [
+        (ARM, "joints: 5", []),
+        (ARM, "joints: true", []),
+        (PID, "dof_names: 1.5", []),
+        # Larger than the largest double.
+        (DRIVE, f'wheel_radius: "0x{"f" * 400}"', []),
+        (DRIVE, 'publish_rate: "inf"', [("publish_rate", ".inf", 7, "publish_rate: .inf")]),
+        (DRIVE, "publish_rate: |\n      50", [("publish_rate", "50.0", 7, "")]),
+    ],
+)
+def test_unusual_values(kind, line, found, tmp_path):
+    assert wrong(written(tmp_path, kind, "use_sim_time: true", line)) == found
+
+
+def test_a_file_is_read_once_for_many_joints_and_lines(tmp_path, monkeypatch):
+    reads = []
+    read = yaml_text.read
+    monkeypatch.setattr(yaml_text, "read", lambda path: reads.append(path) or read(path))
+    joints = [f"j{number}" for number in range(100)]
+    gains = ("gains:", *(f"  {joint}: {{p: 1}}" for joint in joints))
+    path = written(tmp_path, ARM, f"joints: [{', '.join(joints)}]", *gains)
+    (entry,) = controller_entries(ros2_file([read_yaml(path)], ""), "", "")
+    reads.clear()
+    assert len(list(mistyped(entry, [path], classic=False))) == len(joints)
+    assert len(reads) <= 2
 
 
 def test_gains_are_those_of_the_joints(tmp_path):

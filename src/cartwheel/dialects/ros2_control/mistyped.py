@@ -8,6 +8,8 @@ InvalidParameterTypeException, and generate_parameter_library.
 
 from __future__ import annotations
 
+import functools
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,11 +24,14 @@ from cartwheel.dialects.ros2_control.declared_types import CLASSIC, CONTROLLERS,
 from cartwheel.dialects.ros2_control.scalars import type_of
 from cartwheel.dialects.ros_control.files import ControllerEntry
 from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.tags import shown
 from cartwheel.errors import Diagnostic, Origin
 
 _LIST = re.compile(r"\{(\w+)\}")
 _ROS2 = "ros__parameters"
 _SHOWN = 3
+_LONGEST = 300
+"""Maximum number of characters of a parameter's name, and of a line with other values."""
 _DEEPEST = 8
 """Maximum nesting of namespaces around a node."""
 _TEXTS: Mapping[str, str] = {
@@ -61,10 +66,11 @@ class _Wrong:
 
     @property
     def text(self) -> str:
-        """The value as the file states it."""
+        """The value as the file states it, in one line."""
         node = self.node
         if node.id == "scalar":
-            return f'"{node.value}"' if node.style else str(node.value)
+            text = " ".join(str(node.value).split())
+            return f'"{text}"' if node.style else text
         return f"[{', '.join(str(each.value) for each in node.value)}]"
 
     @property
@@ -115,14 +121,14 @@ def _wrong(
     node: str, values: Mapping[str, Any], declared: Mapping[str, Type], files: Sequence[Path]
 ) -> Iterator[_Wrong]:
     """The values with types that Cartwheel converts, and ROS 2 does not."""
-    roots: dict[Path, Any] = {}
+    contents: list[tuple[Path, Mapping[str, Any]]] | None = None
     for name, wanted in _expanded(declared, values):
         if not _may_differ(values.get(name), wanted):
             continue
-        for path in reversed(files):
-            if path not in roots:
-                roots[path] = _root(path)
-            written = _parameter(roots[path], node, name.split("."))
+        if contents is None:
+            contents = [(path, _parameters(path, node)) for path in reversed(files)]
+        for path, stated in contents:
+            written = stated.get(name)
             if written is None:
                 continue
             given = type_of(written)
@@ -141,8 +147,9 @@ def _expanded(
             yield name, wanted
             continue
         joints = values.get(listed[1])
-        for joint in [joints] if isinstance(joints, str) else joints or ():
-            yield name.replace(listed[0], str(joint)), wanted
+        for joint in joints if isinstance(joints, list) else [joints]:
+            if isinstance(joint, str):
+                yield name.replace(listed[0], joint), wanted
 
 
 def _may_differ(value: Any, wanted: Type) -> bool:
@@ -155,34 +162,39 @@ def _may_differ(value: Any, wanted: Type) -> bool:
     return isinstance(value, str | bool | int | float) and type(value) is not right
 
 
-def _root(path: Path) -> Any:
-    """The root node of a file; None if it cannot be read."""
+def _parameters(path: Path, node: str) -> Mapping[str, Any]:
+    """The nodes of the parameters that a file states for a node of ROS 2, by their names."""
+    try:
+        state = path.stat()
+    except OSError:
+        return {}
+    sections = _sections_of(path, state.st_mtime_ns, state.st_size)
+    found: dict[str, Any] = {}
+    for shared in (True, False):
+        for name, parameters in sections:
+            if (name in ("**", "*")) if shared else name == node:
+                found.update(_flat(parameters, ""))
+    return found
+
+
+@functools.lru_cache(maxsize=4)
+def _sections_of(path: Path, _changed: int, _size: int) -> Sequence[tuple[str, Any]]:
+    """The names of the nodes in a file, with their parameters; none if it cannot be read.
+
+    A file with many controllers is read once. `_changed` and `_size` are those of the file.
+    """
     import yaml
 
     if path.suffix not in (".yaml", ".yml"):
-        return None
+        return ()
     try:
         root = yaml.compose(yaml_text.read(path), Loader=yaml_text.loader())
     except (OSError, UnicodeDecodeError, yaml.YAMLError):
-        return None
-    if root is not None:
-        yaml_text.as_ros2(root)
-    return root
-
-
-def _parameter(root: Any, node: str, words: Sequence[str]) -> Any:
-    """The node of a parameter; None if a file does not state it."""
-    own, shared = [], []
-    for name, parameters in _sections(root, ()):
-        if name == node:
-            own.append(parameters)
-        elif name in ("**", "*"):
-            shared.append(parameters)
-    for parameters in (*reversed(own), *reversed(shared)):
-        found = _find(parameters, words)
-        if found is not None:
-            return found
-    return None
+        return ()
+    if root is None:
+        return ()
+    yaml_text.as_ros2(root)
+    return tuple(_sections(root, ()))
 
 
 def _sections(node: Any, path: tuple[str, ...]) -> Iterator[tuple[str, Any]]:
@@ -194,17 +206,16 @@ def _sections(node: Any, path: tuple[str, ...]) -> Iterator[tuple[str, Any]]:
             yield from _sections(value, (*path, *(part for part in key.split("/") if part)))
 
 
-def _find(node: Any, words: Sequence[str]) -> Any:
-    """The node at a path. Dots in a key may join several parts of it."""
-    if not words:
-        return node
-    pairs = dict(_pairs(node))
-    for count in range(len(words), 0, -1):
-        below = pairs.get(".".join(words[:count]))
-        found = None if below is None else _find(below, words[count:])
-        if found is not None:
-            return found
-    return None
+def _flat(node: Any, prefix: str) -> Iterator[tuple[str, Any]]:
+    """The nodes of values by the names of the parameters, with dots."""
+    for key, value in _pairs(node):
+        name = f"{prefix}{key}"
+        if len(name) > _LONGEST:
+            continue
+        if value.id == "mapping":
+            yield from _flat(value, f"{name}.")
+        else:
+            yield name, value
 
 
 def _pairs(node: Any) -> list[tuple[str, Any]]:
@@ -217,16 +228,18 @@ def _by_line(
     found: Sequence[_Wrong], who: str, values: Mapping[str, str | bool]
 ) -> Iterator[Diagnostic]:
     lines: dict[tuple[Path, int], list[_Wrong]] = {}
+    texts = {path: yaml_text.read(path).splitlines() for path in {each.path for each in found}}
     for each in found:
         lines.setdefault((each.path, each.node.start_mark.line), []).append(each)
     for (path, line), wrong in lines.items():
         listed = [
-            f'"{each.name}" must be {_TEXTS[each.wanted]} (got {_TEXTS[each.given]}, {each.text})'
+            f'"{each.name}" must be {_TEXTS[each.wanted]} (got {_TEXTS[each.given]}, '
+            f"{shown(each.text)})"
             for each in wrong[:_SHOWN]
         ]
         more = f", and {len(wrong) - _SHOWN} more" if len(wrong) > _SHOWN else ""
         mended = [each.mended for each in wrong]
-        instead = _replaced(path, wrong) if all(mended) else ""
+        instead = _replaced(texts[path][line], wrong) if all(mended) else ""
         yield CONTROLLER_PARAMETER_TYPE.diagnostic(
             f"{who} does not start in ROS 2, because {', '.join(listed)}{more}",
             origin=Origin(file=shown_path(path), line=line + 1),
@@ -235,7 +248,7 @@ def _by_line(
                 **values,
                 "parameter": wrong[0].name,
                 "parameters": tuple(each.name for each in wrong),
-                "value": wrong[0].text,
+                "value": shown(wrong[0].text),
                 "wanted": wrong[0].wanted,
                 "meant": mended[0],
             },
@@ -256,20 +269,24 @@ def _converted(node: Any, wanted: Type) -> str:
         return {"0": "false", "1": "true", "false": "false", "true": "true"}.get(text.lower(), "")
     try:
         number = float(int(text, 0)) if text.lstrip("+-").startswith("0x") else float(text)
-    except ValueError:
+    except (ValueError, OverflowError):
         return ""
+    if wanted == "double" and not math.isfinite(number):
+        return ".nan" if math.isnan(number) else "-.inf" if number < 0 else ".inf"
     if wanted == "double":
         return f"{text}.0" if re.fullmatch(r"[-+]?\d+", text) else repr(number)
     return str(int(number)) if number.is_integer() else ""
 
 
-def _replaced(path: Path, wrong: Sequence[_Wrong]) -> str:
-    """The line with other values, without indentation; empty if a value has several lines."""
-    number = wrong[0].node.start_mark.line
-    line: str = yaml_text.read(path).splitlines()[number]
+def _replaced(line: str, wrong: Sequence[_Wrong]) -> str:
+    """The line with other values, without indentation; empty if a value has several lines, or if
+    the line is very long.
+    """
+    if len(line) > _LONGEST:
+        return ""
     for each in sorted(wrong, key=lambda one: one.node.start_mark.column, reverse=True):
         start, end = each.node.start_mark, each.node.end_mark
-        if end.line != number:
+        if end.line != start.line:
             return ""
         line = "".join((line[: start.column], each.mended, line[end.column :]))
     return line.strip()
