@@ -3,7 +3,13 @@
 import pytest
 from tests.corpus.carts import cart, plugin, written
 
-from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, MACRO_ABSENT, XACRO_NAME_UNKNOWN
+from cartwheel.codes.files import (
+    FILE_ELSEWHERE,
+    FILE_MISSING,
+    INCLUDE_ABSENT,
+    MACRO_ABSENT,
+    XACRO_NAME_UNKNOWN,
+)
 from cartwheel.codes.robot import (
     BASE_WITHOUT_COLLISION,
     INERTIA_MISSING,
@@ -263,6 +269,20 @@ def test_what_moves_a_robot_that_is_started_in_gazebo_may_be_in_an_absent_file(
         # Its xacro stops at the include.
         assert found == [("load", INCLUDE_ABSENT, "file")]
     assert all(bool(each.reason.values["template"]) == built for each in verdict.faults)
+
+
+def test_an_included_file_of_a_package_that_is_not_here_may_be_another_one(tmp_path):
+    """The package may be installed, as that of another robot from which this one was copied."""
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>")
+    (tmp_path / "drive.xacro").write_text(f"<robot>{cart()}</robot>")
+    include = '<xacro:include filename="$(find other_robot)/drive.xacro"/>'
+    verdict = try_robot(expanded(tmp_path, include), standing=0.5)
+    (fault,) = (each for each in verdict.faults if each.test == "load")
+    assert (fault.code, fault.source, fault.reason.severity) == (
+        FILE_ELSEWHERE,
+        "unknown",
+        "warning",
+    )
 
 
 @pytest.mark.parametrize("built", [False, True])

@@ -281,10 +281,16 @@ def _files_of_author(verdict: Verdict, description: RobotDescription) -> Iterato
     Cartwheel finds such files in the robot's package, or others instead; ROS and Gazebo do not.
     """
     said = (*description.diagnostics, *verdict.diagnostics, *verdict.observed)
+    said = (*(each for each in said if "unfound" not in each.values), *said)
     key = "needed_for"
     lost = {each.values[key]: each for each in reversed(said) if key in each.values}
     for use, reason in reversed(lost.items()):
-        yield Fault(test="controller" if use == "controllers" else "load", reason=reason)
+        # A package that was not found may be installed elsewhere, and contain the file.
+        yield Fault(
+            test="controller" if use == "controllers" else "load",
+            reason=reason,
+            sure="unfound" not in reason.values,
+        )
 
 
 def _material_twice(description: RobotDescription) -> Diagnostic | None:

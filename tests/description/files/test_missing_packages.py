@@ -187,6 +187,12 @@ def test_an_include_from_the_own_package_under_its_former_name(load, package):
     assert line == 1
     assert values["name"] == f"{package}/urdf/base.xacro"
     assert values["used"].endswith("src/mine/urdf/base.xacro")
+    # The package may be installed elsewhere, and contain another file with this name.
+    assert values["needed_for"] == "include"
+    assert values["unfound"] == package.strip("$()").split()[-1].removeprefix("package://")
+    assert [each.severity for each in robot.diagnostics if each.code is FILE_ELSEWHERE] == [
+        "warning"
+    ]
     assert [line for line, _ in reported(robot, INCLUDE_ABSENT)] == [2]
 
 

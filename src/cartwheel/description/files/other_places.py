@@ -10,10 +10,11 @@ from typing import Literal
 
 from cartwheel.codes.files import FILE_ELSEWHERE
 from cartwheel.description.files.package_folders import package_above, package_name
-from cartwheel.errors import Diagnostic, Origin
+from cartwheel.errors import Diagnostic, Origin, Value
 
 FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 """A package's folder in xacro and in launch files."""
+_PACKAGE = re.compile(r"package://([^/]+)/")
 _DEEPEST = 8
 """Number of folders in the path of a missing file that may be packages."""
 _HOME = re.compile(r"(?:file://)?/(?:home|Users)/[^/]+/")
@@ -39,6 +40,8 @@ class Moved:
     origin: Origin | None
     """The first element that refers to it, or one for which it matters."""
     use: Use
+    lacking: str = ""
+    """The package in which it is stated to be, if that was not found."""
 
 
 def other_places(
@@ -77,6 +80,12 @@ def other_places(
             yield found.joinpath(*parts[index + 1 :])
 
 
+def lacks(uri: str, package: Callable[[str], Path | None]) -> str:
+    """The package in which a file is stated to be if it is not found; otherwise an empty text."""
+    stated = FIND.search(uri) or _PACKAGE.match(uri)
+    return stated[1] if stated and package(stated[1]) is None else ""
+
+
 def how_to_refer_to(path: Path) -> str:
     """A sentence with the reference to write for a file that exists."""
     folder = package_above(path.parent)
@@ -98,14 +107,20 @@ def report(uri: str, moved: Moved) -> Diagnostic:
     """Reports a file that is not where a description says.
 
     It is an error if no other computer than the author's has the file, and it matters, or if xacro
-    stops. Its value ``needed_for`` then contains its use.
+    stops. Its value ``needed_for`` then contains its use. If a package was not found, it is a
+    warning, because the package may be installed elsewhere, and the value ``unfound`` is its name.
     """
-    lacking = FIND.search(uri)
-    stops = f'Without the package "{lacking[1]}", ROS stops here. ' if lacking else ""
+    lacking = moved.lacking
+    stops = f'Without the package "{lacking}", ROS stops here. ' if lacking else ""
     at_home = is_in_home(uri)
-    lost = moved.use if at_home or moved.use == "include" else ""
+    lost = moved.use if at_home or (moved.use == "include" and not lacking) else ""
+    found: dict[str, Value] = {"needed_for": lost} if lost else {}
+    if lacking and moved.use == "include":
+        found = {"needed_for": moved.use, "unfound": lacking}
     message = f'"{uri}" does not exist, so "{moved.path}" is used'
-    if lost:
+    if lacking:
+        message = f'the package "{lacking}" was not found, so "{moved.path}" is used for "{uri}"'
+    elif lost:
         where = "is in a home folder" if at_home else "does not exist"
         message = (
             f'"{uri}" {where}, so {_LOST[lost]}{" on other computers" * at_home}; here, '
@@ -116,5 +131,5 @@ def report(uri: str, moved: Moved) -> Diagnostic:
         origin=moved.origin,
         hint=f"{stops}{how_to_refer_to(moved.path)}",
         severity="error" if lost else "warning",
-        values={"name": uri, "used": str(moved.path), **({"needed_for": lost} if lost else {})},
+        values={"name": uri, "used": str(moved.path), **found},
     )

@@ -21,7 +21,7 @@ from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.files.missing_files import advice_about, missing
 from cartwheel.description.files.missing_packages import how_to_install
 from cartwheel.description.files.nameless_packages import about_packages
-from cartwheel.description.files.other_places import FIND, Moved, Use, other_places, report
+from cartwheel.description.files.other_places import FIND, Moved, Use, lacks, other_places, report
 from cartwheel.description.files.package_folders import (
     around,
     is_dir,
@@ -230,7 +230,10 @@ class Packages:
             if is_file(path) and self.may_read(path) and real(path) not in excluded:
                 moved = self.found_elsewhere.get(uri)
                 if moved is None or (use and not moved.use):
-                    self.found_elsewhere[uri] = Moved(path=path, origin=origin, use=use)
+                    lost = lacks(uri, self._search.package)
+                    self.found_elsewhere[uri] = Moved(
+                        path=path, origin=origin, use=use, lacking=lost
+                    )
                 return path
         return None
 
