@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -64,6 +65,22 @@ def missing(folder: Path) -> list[str]:
     """The names of the files that `check` reports as missing."""
     found = coded(check(folder / "urdf/bot.urdf").findings, LAUNCH_STOPS)
     return [Path(str(each.values["file"])).name for each in found]
+
+
+@pytest.mark.parametrize("added", [False, True])
+def test_a_launch_file_may_add_folders_with_worlds_of_other_packages(bot, added):
+    env = '<env name="GAZEBO_RESOURCE_PATH" value="$(find houses)/worlds"/>' if added else ""
+    xml(bot, env + START.format("house.world"))
+    assert missing(bot) == ([] if added else ["house.world"])
+
+
+def test_blank_lines_in_a_list_of_submodules_are_read_quickly(bot):
+    (bot.parent / ".git").mkdir()
+    (bot.parent / ".gitmodules").write_text("\n" * 200_000 + "\tpath = bot/worlds\n")
+    xml(bot, START.format("$(find bot)/worlds/rom.world"))
+    started = time.process_time()
+    assert missing(bot) == []
+    assert time.process_time() - started < 10.0
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ _REFERENCE = re.compile(
     r"(?:\$\(find(?:-pkg-share)?\s{1,9}|package://)([\w-]++)\s{0,9}\)?/([\w./+-]++)(?!\$)"
 )
 """A file in a package. Those with an unknown part do not count."""
-_PROJECT = re.compile(r"^\s*project\s*\(\s*\"?([\w-]+)", re.IGNORECASE | re.MULTILINE)
+_PROJECT = re.compile(r"^[ \t]*project\s*\(\s*\"?([\w-]+)", re.IGNORECASE | re.MULTILINE)
 _SETUP = re.compile(r"\b(?:package_name|name)\s*=\s*[\"']([\w-]+)[\"']")
 _OF_ROS = frozenset({"gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz", "xacro"})
 """Packages whose files are often copied."""

@@ -99,7 +99,8 @@ def _needed(
     facts = facts_of(path, packages, arguments, effort, strict=True)
     if not facts.missing or facts.count > INCLUDES:
         return [*uses]
-    stopped = tuple(Absence(path, facts.folders, effort).certain(facts.missing))
+    included = [file for file, _ in facts.includes]
+    stopped = tuple(Absence(path, included, facts.folders, effort).certain(facts.missing))
     return [replace(each, stopped=stopped) for each in uses]
 
 

@@ -26,7 +26,7 @@ _FOLDER = 100
 """Steps to list a folder."""
 _MOST_FOLDERS = 5000
 """Maximum number of folders of a repository that are searched for a file."""
-_SUBMODULE = re.compile(r"^\s*path\s*=\s*(\S+)\s*$", re.MULTILINE)
+_SUBMODULE = re.compile(r"^[ \t]*path[ \t]*=[ \t]*(\S+)[ \t]*$", re.MULTILINE)
 _BUILDING = ("CMakeLists.txt", "setup.py", "Makefile")
 """Files of a package that may make others."""
 _TEMPLATES = (".xacro", ".in", ".em", ".erb", ".jinja", ".j2", ".template")
@@ -35,6 +35,9 @@ _MOST_LINES = 500
 """Maximum number of lines of a list of ignored files that are read."""
 _OF_GAZEBO = re.compile(r"(?:worlds|media|models)/|~|\$|\w+:")
 """The beginning of the name of a world that may be one of Gazebo's own, or found elsewhere."""
+
+_FOLDERS = "GAZEBO_RESOURCE_PATH"
+"""The folders in which Gazebo Classic searches a world with a relative path."""
 
 
 class Absence:
@@ -45,12 +48,16 @@ class Absence:
 
     Args:
         file: The launch file.
+        included: The launch files that it includes.
         folders: The folders of packages in which it looks for files.
         effort: What looking for them may cost.
     """
 
-    def __init__(self, file: Path, folders: Collection[Path], effort: Effort) -> None:
+    def __init__(
+        self, file: Path, included: Collection[Path], folders: Collection[Path], effort: Effort
+    ) -> None:
         self._file = file.absolute()
+        self._included = included
         self._folders = [folder.absolute() for folder in folders]
         self._effort = effort
 
@@ -87,6 +94,11 @@ class Absence:
         """Whether neither Gazebo nor the repository contains a world with a relative path."""
         if _OF_GAZEBO.match(str(path)) or ".." in path.parts or self._repository is None:
             return False
+        # Launch files can add folders of other packages to those that Gazebo searches.
+        for launch in dict.fromkeys((self._file, *self._included)):
+            self._effort.spend(_FOLDER)
+            if _FOLDERS in _text(launch):
+                return False
         return not any(path.name in names for _, names in self._contents)
 
     def _package_of(self, path: Path) -> Path | None:
@@ -118,8 +130,9 @@ class Absence:
             return True
         folder = next((each for each in path.parents if each.is_dir()), root)
         # Git keeps no empty folders, so it is one of a submodule, or is filled by hand.
-        if not any(folder.iterdir()):
-            return True
+        with contextlib.suppress(OSError):
+            if not any(folder.iterdir()):
+                return True
         ignored = "\n".join(_text(each / ".gitignore") for each in (root, *_between(root, path)))
         patterns = (line.strip().strip("/") for line in ignored.splitlines()[:_MOST_LINES])
         parts = path.relative_to(root).parts if path.is_relative_to(root) else path.parts
