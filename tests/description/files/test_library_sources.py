@@ -1,5 +1,6 @@
 """The source files of a library, by the CMakeLists.txt that builds it."""
 
+import itertools
 import time
 
 import pytest
@@ -50,3 +51,24 @@ def test_lists_that_double_do_not_grow_without_limit(tmp_path):
     before = time.process_time()
     assert [*library_sources("push", tmp_path)] == ["one.cpp"]
     assert time.process_time() - before < 2.0
+
+
+def test_folders_are_listed_only_for_the_library_and_only_in_the_repository(tmp_path):
+    folder = package(tmp_path / "own", "")
+    lists = "file(GLOB all /usr/lib/*.so ../*.cpp src/*.cpp)\n" * 2000
+    (folder / "CMakeLists.txt").write_text(f"{lists}add_library(push ${{all}})")
+    (tmp_path / "secret.cpp").write_text("secret")
+    before = time.process_time()
+    assert [*library_sources("push", folder)] == ["one.cpp", "two.cpp"]
+    assert [*library_sources("pull", folder)] == []
+    assert time.process_time() - before < 2.0
+
+
+def test_cmake_is_read_once_for_all_plugins(tmp_path):
+    for number in range(20):
+        package(tmp_path / f"p{number}", "set(a b c d)\n" * 4000)
+    before = time.process_time()
+    assert [
+        *itertools.chain(*(library_sources(f"push{each}", tmp_path) for each in range(50)))
+    ] == []
+    assert time.process_time() - before < 5.0

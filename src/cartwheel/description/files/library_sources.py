@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import itertools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cartwheel.description.files.package_folders import is_file
@@ -22,12 +23,19 @@ _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _HERE = re.compile(r"\$\{(?:PROJECT|CMAKE)(?:_CURRENT)?_(?:SOURCE|LIST)_DIR\}/?")
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^<>"\n]+)[>"]', re.MULTILINE)
 _SOURCES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h", ".hxx")
+_PATTERN = "\0"
+"""The first character of words that are patterns of file names."""
 _MOST_FOLDERS = 2000
 """Maximum number of folders that are searched."""
 _MOST_LISTS, _MOST_FILES = 200, 60
 """Maximum number of CMakeLists.txt that are read, and of source files."""
+_MOST_PARENTS, _MOST_LISTED = 20, 1000
+"""Maximum number of folders that patterns name, and of files that are listed in each."""
 _LISTS_BYTES, _FILE_BYTES = 100_000, 500_000
 """Number of bytes that are read of each."""
+_MOST_IN_LISTS, _MOST_LIBRARIES = 200_000, 500
+"""Maximum number of words that are read in a CMakeLists.txt, with those of its variables, and of
+libraries."""
 _MOST_WORDS, _LONGEST = 1000, 500
 """Maximum number of words of a list in CMake, and of characters of a word."""
 
@@ -45,23 +53,43 @@ def library_sources(name: str, folder: Path) -> Iterator[str]:
         if _LISTS in names
     )
     for path in itertools.islice(lists, _MOST_LISTS):
-        sources = _built(name, path)
+        sources = _built(name, path, folder.resolve())
         if sources:
             yield from _read(sources, path.parent, folder.resolve())
             return
 
 
-def _built(name: str, lists: Path) -> list[Path]:
+def _built(name: str, lists: Path, within: Path) -> list[Path]:
     """The source files from which a CMakeLists.txt builds a library; none if it does not."""
     try:
-        text = read_start(lists, _LISTS_BYTES).decode("utf-8", "replace")
+        state = lists.stat()
+        words = _libraries(lists, state.st_mtime_ns, state.st_size).get(name, ())
     except OSError:
         return []
+    stated = [word for word in words if not word.startswith(_PATTERN)]
+    patterns = [word[1:] for word in words if word.startswith(_PATTERN)]
+    globbed = itertools.islice(_globbed(lists.parent, patterns, within), _MOST_FILES)
+    files = (lists.parent / word for word in (*stated, *globbed))
+    return [path for path in itertools.islice(files, _MOST_FILES) if is_file(path)]
+
+
+@functools.lru_cache(maxsize=_MOST_LISTS)
+def _libraries(lists: Path, _changed: int, _size: int) -> Mapping[str, Sequence[str]]:
+    """The words that state the source files of the libraries in a CMakeLists.txt, by their names.
+
+    A robot may have many plugins, so that a file is read once. `_changed` and `_size` are its own.
+    """
+    text = read_start(lists, _LISTS_BYTES).decode("utf-8", "replace")
+    found: dict[str, Sequence[str]] = {}
     known: dict[str, list[str]] = {}
+    left = _MOST_IN_LISTS
     for command in _COMMAND.finditer(_COMMENT.sub("", text)):
         verb = command[1].lower()
         words = [_HERE.sub("", word.strip('"')) for word in command[2].split()[:_MOST_WORDS]]
         words = [*itertools.islice(_expanded(words, known), _MOST_WORDS)]
+        left -= len(words)
+        if left < 0:
+            break
         if not words:
             continue
         if verb == "project":
@@ -69,11 +97,14 @@ def _built(name: str, lists: Path) -> list[Path]:
         elif verb == "set":
             known[words[0]] = words[1:]
         elif verb == "file" and words[0].upper() in ("GLOB", "GLOB_RECURSE") and words[1:]:
-            known[words[1]] = [*itertools.islice(_globbed(lists.parent, words[2:]), _MOST_FILES)]
-        elif verb.endswith("add_library") and words[0] == name:
-            files = (lists.parent / word for word in words[1:] if word.endswith(_SOURCES))
-            return [path for path in itertools.islice(files, _MOST_FILES) if is_file(path)]
-    return []
+            # Folders are only listed for the library that is sought.
+            known[words[1]] = [f"{_PATTERN}{word}" for word in words[2:]]
+        elif verb.endswith("add_library") and len(found) < _MOST_LIBRARIES:
+            files = (
+                each for each in words[1:] if each.startswith(_PATTERN) or each.endswith(_SOURCES)
+            )
+            found.setdefault(words[0], [*itertools.islice(files, _MOST_FILES)])
+    return found
 
 
 def _expanded(words: list[str], known: Mapping[str, list[str]]) -> Iterator[str]:
@@ -86,14 +117,18 @@ def _expanded(words: list[str], known: Mapping[str, list[str]]) -> Iterator[str]
             yield _VARIABLE.sub(lambda found: "".join(known.get(found[1], ())[:1]), word)[:_LONGEST]
 
 
-def _globbed(folder: Path, patterns: list[str]) -> Iterator[str]:
-    """The source files in a folder, if one of the patterns names it, such as ``src/*.cpp``."""
-    for pattern in patterns:
-        parent, _, name = pattern.rpartition("/")
-        if "*" in parent or not name.startswith("*"):
-            continue
+def _globbed(folder: Path, patterns: list[str], within: Path) -> Iterator[str]:
+    """The source files in the folders that patterns such as ``src/*.cpp`` name."""
+    parents = {
+        parent: None
+        for parent, _, name in (pattern.rpartition("/") for pattern in patterns)
+        if "*" not in parent and name.startswith("*")
+    }
+    for parent in itertools.islice(parents, _MOST_PARENTS):
         with contextlib.suppress(OSError, ValueError):
-            for path in sorted((folder / parent).iterdir()):
+            if not (folder / parent).resolve().is_relative_to(within):
+                continue
+            for path in sorted(itertools.islice((folder / parent).iterdir(), _MOST_LISTED)):
                 if path.name.endswith(_SOURCES):
                     yield f"{parent}/{path.name}".lstrip("/")
 
