@@ -31,7 +31,7 @@ _LOST: dict[Use, str] = {
 }
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Moved:
     """A file that is not where a description says."""
 

@@ -231,9 +231,7 @@ class Packages:
                 moved = self.found_elsewhere.get(uri)
                 if moved is None or (use and not moved.use):
                     lost = lacks(uri, self._search.package)
-                    self.found_elsewhere[uri] = Moved(
-                        path=path, origin=origin, use=use, lacking=lost
-                    )
+                    self.found_elsewhere[uri] = Moved(path, origin, use, lacking=lost)
                 return path
         return None
 
