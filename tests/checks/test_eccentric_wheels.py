@@ -1,5 +1,7 @@
 """Round wheels whose middle is not on their axis."""
 
+import math
+
 import pytest
 from tests.corpus.carts import RADIUS, cart, plugin, written
 
@@ -27,6 +29,26 @@ def test_a_wheel_that_turns_about_another_point_is_reported(tmp_path, offset, to
     off = [each for each in found if each.code is WHEEL_NOT_ROUND]
     assert len(off) == 2 * told
     assert all(each.values["offset"] == pytest.approx(abs(offset)) for each in off)
+
+
+@pytest.mark.parametrize(("rollers", "moved"), [(5, False), (7, False), (7, True)])
+def test_rollers_around_the_axis_are_on_it(tmp_path, rollers, moved):
+    """The middle of five rollers' widths is not the middle of the circle on which they are."""
+    ring = "".join(
+        f'<collision><origin xyz="{0.7 * RADIUS * math.cos(angle) + 0.1 * RADIUS * moved} '
+        f'{0.7 * RADIUS * math.sin(angle)} 0"/><geometry><sphere radius="{0.3 * RADIUS}"/>'
+        for angle in (2 * math.pi * each / rollers for each in range(rollers))
+    ).replace('"/><coll', '"/></geometry></collision><coll')
+    text = cart()
+    assert text.count(WHEEL) == 2
+    found = cartwheel.check(written(tmp_path, text.replace(WHEEL, ring), plugin())).findings
+    assert len([each for each in found if each.code is WHEEL_NOT_ROUND]) == 2 * moved
+
+
+def test_wheels_whose_size_is_almost_0_are_judged(tmp_path):
+    tiny = WHEEL.replace('<cylinder radius="0.05" length="0.02"/>', '<sphere radius="1e-300"/>')
+    found = cartwheel.check(written(tmp_path, cart().replace(WHEEL, tiny), plugin())).findings
+    assert all(each.code is not WHEEL_NOT_ROUND for each in found)
 
 
 def test_a_base_that_has_to_climb_its_own_wheels_is_explained(tmp_path):

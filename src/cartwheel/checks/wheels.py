@@ -30,6 +30,9 @@ ROUND = 0.7
 """Minimum ratio of the smallest to the largest width of a round wheel."""
 _WORN = 0.002
 """Part of a wheel's radius by which points of its tread may differ."""
+_FURTHER = 0.75
+"""Part of a wheel's offset from its axis by which it reaches further from the axis than a wheel
+without the offset, at least: shapes have corners."""
 _SAME = 1e-6
 """Distance between two joints at the same place, m."""
 CAMBER = 0.5
@@ -81,7 +84,7 @@ def wheel_tread(robot: Robot, joint: Joint) -> tuple[float, float, float]:
         radii = np.linalg.norm(cloud - np.outer(along, axis), axis=1)
     if not np.isfinite(radii).all():
         return wheel_middle(robot, joint)
-    tread = along[radii > radii.max() - _WORN * radii.max()]
+    tread = along[radii >= radii.max() - _WORN * radii.max()]
     x, y, z = (axis * (tread.min() + tread.max()) / 2).tolist()
     return (wheel_place(robot, joint) @ Pose((x, y, z))).position
 
@@ -101,14 +104,21 @@ def wheel_widths(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) ->
 
 
 def wheel_offset(robot: Robot, joint: Joint) -> float:
-    """Distance of the middle of a round wheel's collisions from its axis, m; 0 without any."""
+    """Distance of the middle of a round wheel's collisions from its axis, m; 0 without any.
+
+    It is 0 if the wheel does not reach further from its axis than from its middle, such as a ring
+    of five rollers around the axis.
+    """
 
     def compute() -> float:
         cloud = _cloud(robot, joint, robot.collisions)
         if cloud is None:
             return 0.0
         along = cloud @ _across(np.array(joint.axis.xyz)).T
-        return float(np.abs(along.max(axis=0) + along.min(axis=0)).max()) / 2
+        offset = float(np.abs(along.max(axis=0) + along.min(axis=0)).max()) / 2
+        radius = float(np.ptp(along, axis=0).max()) / 2
+        reach = float(np.abs(along).max())
+        return offset if reach > radius + _FURTHER * offset else 0.0
 
     return robot.once("offset of collisions", joint, compute)
 

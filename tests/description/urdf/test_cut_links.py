@@ -140,3 +140,11 @@ def test_the_missing_moments_are_written(tmp_path):
 def test_a_likely_misspelling(wrong, meant):
     (found,) = cut(urdf(f"<inertial>{wrong}{SIX}</inertial>{FELT}"))
     assert found.values["meant"] == meant
+
+
+@pytest.mark.parametrize(("version", "lost"), [("1.0", True), ("1.2", False)])
+def test_a_capsule_belongs_to_a_later_version_of_urdf(version, lost):
+    text = urdf(BODY + solid('<capsule radius="1" length="1"/>')).replace(
+        "<robot", f'<robot version="{version}"', 1
+    )
+    assert bool(cut(text)) == lost

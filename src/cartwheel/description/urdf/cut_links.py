@@ -7,7 +7,7 @@ What the readers of Cartwheel refuse is not repeated here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cartwheel.codes.tags import LINK_CUT_SHORT
@@ -17,7 +17,7 @@ from cartwheel.description.model import MOMENTS
 from cartwheel.description.urdf.refusals import trimmed
 from cartwheel.errors import Diagnostic, Place, Value
 
-_SHAPES = {
+_SHAPES: Mapping[str, Sequence[str]] = {
     "box": (),
     "sphere": ("radius",),
     "cylinder": ("length", "radius"),
@@ -25,7 +25,8 @@ _SHAPES = {
 }
 """The shapes that urdfdom knows, with their attributes that are single numbers.
 
-The releases up to ROS Kilted know no others. Later ones know a capsule in URDF 1.2.
+The releases up to ROS Kilted know no others. Later ones know a capsule in URDF 1.2, which the
+earlier ones do not load.
 """
 _CAPSULE = (
     "Write a <cylinder> and two <sphere> elements, each in its own <collision> or <visual>: no "
@@ -67,8 +68,11 @@ def cut_links(root: Node) -> Iterator[Diagnostic]:
         if joint.attributes.get("type", "").strip() == "fixed"
         for child in _all(joint, "child")
     }
+    shapes = _SHAPES
+    if root.attributes.get("version", "").strip().startswith("1.2"):
+        shapes = {**_SHAPES, "capsule": ("length", "radius")}
     for link in _all(root, "link"):
-        stop = _stop_of(link)
+        stop = _stop_of(link, shapes)
         if stop is not None:
             yield from _report(link, stop, fixed)
 
@@ -116,13 +120,13 @@ def _shown(lost: Sequence[Node], kind: str, stop: Node) -> list[str]:
     return [*this, *([f"{the} {kind}{'s' if count > 1 else ''}"] if count else [])]
 
 
-def _stop_of(link: Node) -> _Stop | None:
+def _stop_of(link: Node, shapes: Mapping[str, Sequence[str]]) -> _Stop | None:
     """Where urdfdom stops reading a link; None if it reads all of it."""
     for inertial in _all(link, "inertial")[:1]:
         if (stop := _stop_in_inertial(inertial)) is not None:
             return stop
     for part in (*_all(link, "visual"), *_all(link, "collision")):
-        if (stop := _stop_in_shape(part)) is not None:
+        if (stop := _stop_in_shape(part, shapes)) is not None:
             return stop
         nameless = part.tag == "visual" and any(
             "name" not in each.attributes for each in _all(part, "material")[:1]
@@ -185,7 +189,7 @@ def _stop_in_inertial(inertial: Node) -> _Stop | None:
     return stop
 
 
-def _stop_in_shape(part: Node) -> _Stop | None:
+def _stop_in_shape(part: Node, known: Mapping[str, Sequence[str]]) -> _Stop | None:
     geometries = _all(part, "geometry")[:1]
     shapes = geometries[0].children[:1] if geometries else []
     if not shapes:
@@ -194,19 +198,19 @@ def _stop_in_shape(part: Node) -> _Stop | None:
             part=part,
             at=part,
             message=f"a <{part.tag}> has {what} <geometry>",
-            hint=f"Add <geometry> with one of: {', '.join(_SHAPES)}.",
+            hint=f"Add <geometry> with one of: {', '.join(known)}.",
             values={"missing": "geometry", "left_out": part.tag},
         )
     shape = shapes[0]
-    if shape.tag not in _SHAPES:
+    if shape.tag not in known:
         return _Stop(
             part=part,
             at=shape,
             message=f"a <geometry> begins with <{shape.tag}>",
-            hint=_CAPSULE if shape.tag == "capsule" else f"Begin with one of: {_listed(_SHAPES)}.",
+            hint=_CAPSULE if shape.tag == "capsule" else f"Begin with one of: {_listed(known)}.",
             values={"name": shape.tag},
         )
-    return _stop_at_number(part, shape, _SHAPES[shape.tag])
+    return _stop_at_number(part, shape, known[shape.tag])
 
 
 def _stop_at_number(part: Node, node: Node, attributes: Sequence[str]) -> _Stop | None:

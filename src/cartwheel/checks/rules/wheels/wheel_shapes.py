@@ -75,7 +75,7 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
 def _off_axis(robot: Robot, joint: Joint, widths: Floats, what: str) -> Iterator[Diagnostic]:
     """A round wheel whose middle is not on its axis, so that the robot rises and sinks."""
     radius, offset = float(widths.max()) / 2, wheel_offset(robot, joint)
-    if widths.min() < _CIRCULAR * widths.max() or not _OFF_AXIS < offset / radius < 1.0:
+    if widths.min() < _CIRCULAR * widths.max() or not _OFF_AXIS * radius < offset < radius:
         return
     link = robot.links[joint.child]
     yield robot_codes.WHEEL_NOT_ROUND.diagnostic(
