@@ -110,6 +110,8 @@ def test_a_spawner_may_wait_for_a_manager_outside_of_gazebo(robot):
         ("namespace='robot'", "/robot", True),
         ("condition=UnlessCondition('true')", None, False),
         ("condition=UnlessCondition('false')", None, True),
+        ("name='controller_manager'", None, True),
+        ("name='driver'", None, False),
         # It is unknown whether it starts.
         ("condition=IfCondition(LaunchConfiguration('real'))", None, False),
     ],

@@ -96,7 +96,7 @@ class LaunchUse:
     """The namespaces in which it starts controller managers of ROS 2 outside of Gazebo; `UNKNOWN`
     is among them if one is uncertain."""
     sure_managers: frozenset[str] = field(default=frozenset(), compare=False)
-    """Those about which no unknown condition decides."""
+    """Those about which no unknown condition decides, and whose name is that of the program."""
     several: bool = field(default=False, compare=False)
     """Whether it spawns several models, or names several descriptions. Its controllers may be those
     of another one."""

@@ -388,6 +388,7 @@ class Facts:
         remappings: Mapping[str, str] = MappingProxyType({}),
         values: Mapping[str, str] = MappingProxyType({}),
         origin: Origin | None = None,
+        name: str = "",
     ) -> None:
         """Adds what a node starts: models, controllers or a bridge.
 
@@ -400,6 +401,7 @@ class Facts:
             remappings: New names of its topics, by their old names.
             values: Its parameters, by name.
             origin: Where it is stated; None if only the file is known.
+            name: Its name; empty if it has that of its program.
         """
         self.programs[UNKNOWN if UNKNOWN in space else space.strip("/"), package] = None
         if package in _GAZEBO:
@@ -443,7 +445,8 @@ class Facts:
                 self.sought_in_ros2 += ((command.space, name) for name in command.started)
         if executable == "ros2_control_node":
             outside = UNKNOWN if UNKNOWN in space else space.strip("/")
-            self.managers[outside] = self.managers.get(outside, False) or not self.doubts
+            sure = not self.doubts and name in ("", "controller_manager")
+            self.managers[outside] = self.managers.get(outside, False) or sure
         self.partial |= _HARDWARE.search(executable) is not None
         self.spawning |= spawns(words) or (package in _GAZEBO and executable in MODEL_SPAWNERS)
         if package == "rosservice" and words[:1] == ["call"]:

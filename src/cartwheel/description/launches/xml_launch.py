@@ -127,6 +127,7 @@ class _Reader:
                     if child.tag == "param" and "value" in child.attributes and self._holds(child)
                 },
                 origin=node.origin,
+                name=self._value(node, "name"),
             )
             if kind == "type" and package == "controller_manager":
                 facts.seek(split(self._value(node, "args")), self._space(node))

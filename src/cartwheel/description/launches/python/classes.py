@@ -210,6 +210,7 @@ class Classes:
             remappings=remappings,
             values=values,
             origin=Origin(file=str(self.path), line=self.line),
+            name=joined(words.get("name", "")),
         )
         parameters = words.get("parameters")
         for each in parameters if isinstance(parameters, list) else []:
