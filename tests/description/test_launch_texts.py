@@ -1,5 +1,6 @@
 """Texts of files that launch files in Python change, as by ReplaceString and RewrittenYaml."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -137,3 +138,19 @@ def test_messages_name_the_original(tmp_path):
     assert rewritten(copy, "a: 3\n") != copy
     assert original(rewritten(copy, "a: 3\n")) == source
     assert rewritten(source, "a" * 2_000_000) == source
+
+
+def test_a_folder_of_a_repository_with_the_name_of_one_for_copies(tmp_path):
+    """Reading a named pipe would not end."""
+    folder = tmp_path / "cartwheel-launched-x" / "0"
+    folder.mkdir(parents=True)
+    file = folder / "robot.urdf"
+    file.write_text("<robot/>")
+    os.mkfifo(folder / ".source")
+    assert original(file) == file
+    (folder / ".source").unlink()
+    (folder / ".source").write_text("/etc/hostname")
+    assert original(file) == file
+    copy = rewritten(file, "<robot></robot>")
+    assert copy != file
+    assert original(copy) == file

@@ -11,6 +11,7 @@ import contextlib
 import hashlib
 import os
 import shutil
+import stat
 import tempfile
 from pathlib import Path
 
@@ -70,7 +71,21 @@ def rewritten(source: Path, text: str) -> Path:
 def original(path: Path) -> Path:
     """The file of which a path is a copy; the path itself for any other file."""
     parts = path.parts
-    if len(parts) > 2 and parts[-3].startswith(_FOLDER):
+    if len(parts) > 2 and parts[-3].startswith(_FOLDER) and _is_made(path.parent.parent):
         with contextlib.suppress(OSError):
             return Path(os.fsdecode((path.parent / _SOURCE).read_bytes()))
     return path
+
+
+def _is_made(folder: Path) -> bool:
+    """Whether a process of this user made a folder for copies, and nobody else can write to it.
+
+    A repository can contain a folder with such a name.
+    """
+    try:
+        about = folder.lstat()
+    except OSError:
+        return False
+    private = stat.S_ISDIR(about.st_mode) and not about.st_mode & 0o077
+    near = os.path.realpath(folder.parent) == os.path.realpath(tempfile.gettempdir())
+    return private and near and about.st_uid == os.getuid()
