@@ -8,7 +8,7 @@ from tests.coded import named, placed
 
 import cartwheel as cw
 from cartwheel.codes import tags
-from cartwheel.description import load_text
+from cartwheel.description import load_robot, load_text
 from cartwheel.description import model as m
 from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose
@@ -220,7 +220,6 @@ ERRORS = [
     (urdf(), 1, "model-empty"),
     ("<robot/>", 1, "not-a-description"),
     ('<robot><link name="a"/></robot>', 1, "tag-missing"),
-    ('<robot name=" "><link name="a"/></robot>', 1, "tag-missing"),
     (urdf(link("a"), link("a")), 3, "duplicate-name"),
     (
         urdf(link("a"), link("b"), joint("j", "a", "b"), joint("j", "a", "b")),
@@ -675,3 +674,13 @@ def test_of_several_shapes_the_first_is_used(shapes, first):
     assert not isinstance(collision.shape, m.Box) or collision.shape.size == (1.0, 1.0, 1.0)
     (found,) = (each for each in robot.diagnostics if each.code is tags.TAG_REPEATED)
     assert found.origin.line == 3
+
+
+@pytest.mark.parametrize("name", ["", " "])
+def test_a_robot_with_an_empty_name_is_called_as_its_file(name, tmp_path):
+    """ROS and Gazebo accept it."""
+    path = tmp_path / "cart.urdf"
+    path.write_text(f'<robot name="{name}"><link name="a"/></robot>')
+    robot = load_robot(path)
+    assert robot.name == "cart"
+    assert any(each.values.get("missing") == "name" for each in robot.diagnostics)
