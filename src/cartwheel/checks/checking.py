@@ -19,7 +19,11 @@ from cartwheel.checks.stated_sizes import controlled_sides, controlled_steering
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
 from cartwheel.codes.devices import PLUGIN_OF_OTHER_GAZEBO, PLUGIN_PARAMETER_UNKNOWN
-from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
+from cartwheel.codes.running import (
+    CONTROLLER_NOT_STARTED,
+    JOINT_DRIVEN_TWICE,
+    MODEL_NOT_MOVABLE,
+)
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.codes.world import PHYSICS_SETTING_IGNORED, PLANE_NOT_STATIC
 from cartwheel.description.elements.node import Node
@@ -38,6 +42,7 @@ from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 REPORTED = (
     *(code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)),
+    MODEL_NOT_MOVABLE,
     CONTROLLER_NOT_STARTED,
     JOINT_DRIVEN_TWICE,
     PLANE_NOT_STATIC,
