@@ -10,7 +10,8 @@ from tests.coded import coded
 from cartwheel.checks import check
 from cartwheel.codes.files import FILE_ELSEWHERE, FILE_MISSING, PACKAGE_WITHOUT_MANIFEST
 from cartwheel.description.files.packages import Packages
-from cartwheel.description.launches import launches_near
+from cartwheel.description.files.repositories import root_of
+from cartwheel.description.launches import LaunchSearch, launches_near
 
 LINK = """<link name="base"><inertial><mass value="1"/>
 <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
@@ -110,3 +111,18 @@ def test_a_folder_with_the_name_of_the_package_is_reported(folder: Path) -> None
     search = packages(own)
     assert search.find("bot") == own
     assert len([*coded(search.moves(), PACKAGE_WITHOUT_MANIFEST)]) == 1
+
+
+def test_launch_files_of_a_folder_that_stands_for_a_package_are_the_robots_own(
+    folder: Path,
+) -> None:
+    """A downloaded archive has no .git either."""
+    (folder / "launch/spawn.launch").write_text(LAUNCH)
+    robot = folder / "urdf/robot.urdf"
+    assert root_of(robot) == folder
+    for given in (None, folder, folder.parent):
+        own = LaunchSearch(given=given).of(robot)
+        assert own.folder == folder
+        assert [each.controllers for each in own.launches] == [
+            (folder / "config/controllers.yaml",)
+        ]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from cartwheel.description.files.nameless_packages import nameless_packages
 from cartwheel.description.files.package_folders import around, is_file
 
 _ROOT = (".git", ".github", ".gitmodules")
@@ -42,12 +43,13 @@ def repository_of(file: Path, within: Path | None = None) -> Path | None:
 def root_of(description: Path) -> Path | None:
     """The folder with a description's package and the packages beside it; None outside of packages.
 
-    Its launch files may start the description.
+    Its launch files may start the description. A folder that stands for a package, although it has
+    no package.xml, counts as well.
     """
     for folder in description.absolute().parents[:_LEVELS]:
         if is_file(folder / "package.xml") or is_file(folder / "manifest.xml"):
             return folder.parent if _has_others(folder) else folder
-    return None
+    return next(iter(nameless_packages(description.absolute()).values()), None)
 
 
 def _has_others(folder: Path) -> bool:
