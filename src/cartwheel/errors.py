@@ -376,6 +376,12 @@ def one_line(error: Exception) -> str:
     return f"{place}{error.message}{f'. {error.hint}' if error.hint else ''}"
 
 
+def enumerated(texts: Iterable[str]) -> str:
+    """Texts in a sentence, as in ``a, b and c``."""
+    *first, last = [*texts] or [""]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
 def fault(
     message: str,
     error: BaseException,

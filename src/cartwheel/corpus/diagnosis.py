@@ -106,17 +106,17 @@ def faults(
         description: The robot.
         findings: Returns the findings of `cartwheel check`, which takes time.
     """
-    none = True
-    for fault in _faults(verdict, description, findings):
-        none = False
-        absent = None if fault.reason is None else _absent_part(fault.reason, description)
-        if absent is None:
-            yield fault
-        else:
-            outside = is_lost_model(absent) or absent.values.get("package")
-            yield replace(fault, reason=absent, sure=fault.sure and not outside)
-    if none:
-        yield from _lost_parts(description)
+    found = [_in_absent_part(each, description) for each in _faults(verdict, description, findings)]
+    yield from found or _lost_parts(description)
+
+
+def _in_absent_part(fault: Fault, description: RobotDescription) -> Fault:
+    """The fault; with the part that is left out as its reason, if that would explain it."""
+    absent = None if fault.reason is None else _absent_part(fault.reason, description)
+    if absent is None:
+        return fault
+    outside = is_lost_model(absent) or absent.values.get("package")
+    return replace(fault, reason=absent, sure=fault.sure and not outside)
 
 
 def _lost_parts(description: RobotDescription) -> Iterator[Fault]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from cartwheel.corpus.movers import is_mover, may_drive
 from cartwheel.description import load_world
 from cartwheel.description.elements.node import Node
-from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.files.regular_files import text_if_regular
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.description.loading import open_description
 from cartwheel.description.model import RobotDescription
@@ -105,10 +105,7 @@ def _level(pose: Pose) -> Pose:
 
 def text_of(path: Path) -> str:
     """A file's text without comments; empty if it cannot be read."""
-    try:
-        return _COMMENT.sub("", read_regular_text(path))
-    except OSError:
-        return ""
+    return _COMMENT.sub("", text_if_regular(path))
 
 
 def _files(folder: Path) -> Iterator[Path]:

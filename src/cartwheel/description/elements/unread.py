@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from cartwheel.codes import tags as codes
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.node import Node
-from cartwheel.errors import Diagnostic, Origin, Value
+from cartwheel.errors import Diagnostic, Origin, Value, enumerated
 
 _ATTRIBUTE = re.compile(r"""(?<![\w:])(\w+)\s*=\s*("[^"]*"|'[^']*')""")
 _LONGEST = 1000
@@ -127,7 +127,7 @@ def _subject(plugins: Sequence[Node], *, whole: bool) -> str:
         names = [*names[:_SHOWN], f"{len(names) - _SHOWN} more"]
     if len(names) < 2:
         return f"plugin {names[0]} in it is" if names else ""
-    return f"plugins {', '.join(names[:-1])} and {names[-1]} in it are"
+    return f"plugins {enumerated(names)} in it are"
 
 
 def _ignored(

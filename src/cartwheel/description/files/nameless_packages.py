@@ -15,7 +15,7 @@ from pathlib import Path
 from cartwheel.codes.files import PACKAGE_OF_NEIGHBOUR, PACKAGE_WITHOUT_MANIFEST
 from cartwheel.description.files.package_folders import is_file, package_above, packages_in
 from cartwheel.description.files.readable_files import is_common
-from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.files.regular_files import text_if_regular
 from cartwheel.description.files.source_folders import source_folders
 from cartwheel.errors import Diagnostic, Origin
 
@@ -72,11 +72,11 @@ def nameless_packages(file: Path) -> dict[str, Path]:
 def _names(folder: Path) -> Iterator[str]:
     """The names by which a folder is meant."""
     for file, pattern in (("CMakeLists.txt", _PROJECT), ("setup.py", _SETUP)):
-        if (stated := pattern.search(_text(folder / file))) is not None:
+        if (stated := pattern.search(text_if_regular(folder / file, _MOST_BYTES))) is not None:
             yield stated[1]
     stated_files: dict[str, set[str]] = {}
     for path in itertools.islice(_texts(folder), _MOST_FILES):
-        for name, rest in _REFERENCE.findall(_text(path)):
+        for name, rest in _REFERENCE.findall(text_if_regular(path, _MOST_BYTES)):
             if ".." not in rest and not rest.endswith("/"):
                 stated_files.setdefault(name, set()).add(rest)
     for name, files in stated_files.items():
@@ -89,13 +89,6 @@ def _texts(folder: Path) -> Iterator[Path]:
     """The files in a folder and its subfolders that may refer to packages."""
     for here, names in itertools.islice(source_folders(folder), _MOST_FOLDERS):
         yield from (here / name for name in names if name.endswith(_ENDS))
-
-
-def _text(file: Path) -> str:
-    try:
-        return read_regular_text(file, _MOST_BYTES)
-    except OSError:
-        return ""
 
 
 def about_packages(

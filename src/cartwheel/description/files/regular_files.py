@@ -44,3 +44,11 @@ def read_regular_text(path: Path, most: int = MOST_BYTES) -> str:
         OSError: As `read_regular`.
     """
     return read_regular(path, most).decode("utf-8", "replace")
+
+
+def text_if_regular(path: Path, most: int = MOST_BYTES) -> str:
+    """As `read_regular_text`; empty for a file that cannot be read."""
+    try:
+        return read_regular_text(path, most)
+    except OSError:
+        return ""

@@ -12,7 +12,7 @@ from pathlib import Path
 from cartwheel.codes.files import LAUNCH_VALUE_UNKNOWN
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.description.files.packages import Packages
-from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.files.regular_files import text_if_regular
 from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.description.launches.launch_use import LaunchUse
 from cartwheel.description.launches.mistakes.absence import Absence
@@ -124,10 +124,7 @@ def _without_defaults(use: LaunchUse, defaults: Mapping[str, str]) -> LaunchUse:
     """
     if use.description is None:
         return use
-    try:
-        text = read_regular_text(use.description)
-    except OSError:
-        return use
+    text = text_if_regular(use.description)
     stated, other = frozenset(_DEFAULT.findall(text)), frozenset(defaults.values())
     return replace(
         use,
@@ -213,6 +210,7 @@ def _unnamed(
 
 
 def left_out(path: Path, why: str, what: str) -> LaunchUse:
+    """Stands for what was not read of a launch file, with the reason."""
     said = LAUNCH_VALUE_UNKNOWN.diagnostic(
         f"{why}, so {what} read",
         origin=Origin(file=shown_path(path)),

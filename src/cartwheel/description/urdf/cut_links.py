@@ -7,7 +7,7 @@ What the readers of Cartwheel refuse is not repeated here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cartwheel.codes.tags import LINK_CUT_SHORT
@@ -15,7 +15,7 @@ from cartwheel.description.elements import numbers
 from cartwheel.description.elements.node import Node
 from cartwheel.description.model import MOMENTS
 from cartwheel.description.urdf.refusals import trimmed
-from cartwheel.errors import Diagnostic, Place, Value
+from cartwheel.errors import Diagnostic, Place, Value, enumerated
 
 _SHAPES: Mapping[str, Sequence[str]] = {
     "box": (),
@@ -96,7 +96,7 @@ def _report(link: Node, stop: _Stop, fixed: set[str]) -> Iterator[Diagnostic]:
     matters = bool(collisions) or (inertia and name not in fixed)
     yield LINK_CUT_SHORT.diagnostic(
         f'{stop.message}, so ROS and Gazebo stop there and load link "{name}" without '
-        f"{_listed(shown)}; Cartwheel reads the rest of it",
+        f"{enumerated(shown)}; Cartwheel reads the rest of it",
         severity="error" if matters else "warning",
         origin=stop.at.origin,
         hint=stop.hint,
@@ -178,7 +178,7 @@ def _stop_in_inertial(inertial: Node) -> _Stop | None:
         return _Stop(
             part=inertial,
             at=tensor,
-            message=f"an <inertia> has no {_listed(missing)}",
+            message=f"an <inertia> has no {enumerated(missing)}",
             instead=f"<inertia {written}/>",
             place="element",
             values={"tag": "inertia", "missing": tuple(missing)},
@@ -207,7 +207,7 @@ def _stop_in_shape(part: Node, known: Mapping[str, Sequence[str]]) -> _Stop | No
             part=part,
             at=shape,
             message=f"a <geometry> begins with <{shape.tag}>",
-            hint=_CAPSULE if shape.tag == "capsule" else f"Begin with one of: {_listed(known)}.",
+            hint=_CAPSULE if shape.tag == "capsule" else f"Begin with one of: {enumerated(known)}.",
             values={"name": shape.tag},
         )
     return _stop_at_number(part, shape, known[shape.tag])
@@ -229,11 +229,6 @@ def _stop_at_number(part: Node, node: Node, attributes: Sequence[str]) -> _Stop 
                 values={"name": f"{node.tag} {name}", "stated": text[:_MOST_TEXT]},
             )
     return None
-
-
-def _listed(words: Iterable[str]) -> str:
-    *first, last = words
-    return f"{', '.join(first)} and {last}" if first else last
 
 
 def _all(node: Node, tag: str) -> list[Node]:

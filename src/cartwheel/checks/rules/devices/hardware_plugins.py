@@ -121,8 +121,10 @@ def _uses(subject: Subject) -> list[LaunchUse]:
         and each.alone
         and _starts(each, subject)
     )
-    found = ([first] if first is not None else []) + [each for each in others if each is not first]
-    return list({each.file: each for each in reversed(found)}.values())[::-1][:_MOST_LAUNCHES]
+    found = {} if first is None else {first.file: first}
+    for each in others:
+        found.setdefault(each.file, each)
+    return list(found.values())[:_MOST_LAUNCHES]
 
 
 def _without_manager(subject: Subject, robot: Robot, use: LaunchUse) -> Iterator[Diagnostic]:

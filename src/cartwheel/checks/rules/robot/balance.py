@@ -28,7 +28,7 @@ from cartwheel.codes import robot as robot_codes
 from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import Joint, Link, Sphere
 from cartwheel.description.solids import Floats
-from cartwheel.errors import Diagnostic, Value
+from cartwheel.errors import Diagnostic, Value, enumerated
 
 _TOUCHES = 0.03
 """Maximum height of a supporting point above the lowest one, relative to the robot's size."""
@@ -166,7 +166,7 @@ def _listed(names: Sequence[str]) -> str:
     shown = [f'"{name}"' for name in names]
     if len(shown) > _SHOWN:
         shown = [*shown[:_SHOWN], f"{len(shown) - _SHOWN} more"]
-    return " and ".join([", ".join(shown[:-1]), shown[-1]]) if len(shown) > 1 else shown[0]
+    return enumerated(shown)
 
 
 def _topples(center: Floats, points: Floats, rest: Rest, size: float) -> bool:

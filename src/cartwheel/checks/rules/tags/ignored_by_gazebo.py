@@ -10,7 +10,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import tags as codes
 from cartwheel.description.elements.node import Node
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, enumerated
 
 _TAGS = {
     "collision": (
@@ -85,14 +85,15 @@ def _ignored(robot: Robot, link: Node, stated: Sequence[Node]) -> Iterator[Diagn
         own = nodes.name_of(first)
         called = f'the {kind} "{own}"' if own else f"the {kind}"
         more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
+        tags = tuple(dict.fromkeys(each.tag for each in used))
         yield codes.GAZEBO_IGNORES.diagnostic(
-            f"Gazebo ignores {_listed(used)} for {called} of link "
+            f"Gazebo ignores {enumerated(f'<{tag}>' for tag in tags)} for {called} of link "
             f'"{name}"{more}, because of its name',
             severity="warning" if any(map(_matters, used)) else "info",
             origin=first.origin,
             hint=_advice(name, root, kind),
             mark="name" if own else "",
-            values={"link": name, "name": own, "tags": tuple(dict.fromkeys(e.tag for e in used))},
+            values={"link": name, "name": own, "tags": tags},
         )
 
 
@@ -124,8 +125,3 @@ def _matters(tag: Node) -> bool:
     """Whether a tag states another friction than Gazebo's default."""
     value = nodes.number(tag.text or tag.attributes.get("value", ""))
     return tag.tag in _FRICTION and value is not None and value != 1.0
-
-
-def _listed(used: Sequence[Node]) -> str:
-    names = [f"<{each}>" for each in dict.fromkeys(each.tag for each in used)]
-    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

@@ -29,7 +29,7 @@ from cartwheel.codes import robot as robot_codes
 from cartwheel.description.kinematics import carried
 from cartwheel.description.model import Joint, Link
 from cartwheel.description.solids import bounds
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, enumerated
 from cartwheel.geometry import rotate
 
 _SINKS = 3e-4
@@ -287,22 +287,18 @@ def _report(
     amounts = {name: f"{1000 * depth:.2g} mm" for name, depth in low.items()}
     yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
         message=f"the robot stands on {_quoted(feet)}, "
-        f"{_listed([amounts[name] for name in feet])} below the driven wheels, so "
+        f"{enumerated([amounts[name] for name in feet])} below the driven wheels, so "
         f"{_quoted(raised)} {'does' if len(raised) == 1 else 'do'} not touch the ground",
         values={"links": tuple(feet), "depth": max(low[name] for name in feet)},
         origin=robot.links[feet[0]].collisions[0].origin,
         hint="Raise "
-        + _listed([f'"{name}" by {amount}' for name, amount in amounts.items()])
+        + enumerated([f'"{name}" by {amount}' for name, amount in amounts.items()])
         + ", or lower the wheels.",
     )
 
 
 def _quoted(names: Iterable[str]) -> str:
-    return _listed([f'"{name}"' for name in names])
-
-
-def _listed(texts: list[str]) -> str:
-    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))
+    return enumerated(f'"{name}"' for name in names)
 
 
 def _wheel(joint: Joint, below: Mapping[str, list[Joint]]) -> list[str]:

@@ -15,7 +15,7 @@ from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.files.other_places import is_in_home
 from cartwheel.description.files.package_folders import is_file, package_above
 from cartwheel.description.files.readable_files import is_common
-from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.files.regular_files import text_if_regular
 from cartwheel.description.files.repositories import repository_of, root_of
 from cartwheel.description.files.ros_version import ros_version
 from cartwheel.description.files.source_folders import source_folders
@@ -97,7 +97,7 @@ class Absence:
         # Launch files can add folders of other packages to those that Gazebo searches.
         for launch in dict.fromkeys((self._file, *self._included)):
             self._effort.spend(_FOLDER)
-            if _FOLDERS in _text(launch):
+            if _FOLDERS in text_if_regular(launch):
                 return False
         return not any(path.name in names for _, names in self._contents)
 
@@ -125,7 +125,7 @@ class Absence:
         """Whether a file is in a submodule, or of a kind that the repository does not contain."""
         root = self._repository
         assert root is not None
-        text = _text(root / ".gitmodules")
+        text = text_if_regular(root / ".gitmodules")
         if any(path.is_relative_to(root / found[1]) for found in _SUBMODULE.finditer(text)):
             return True
         folder = next((each for each in path.parents if each.is_dir()), root)
@@ -133,7 +133,9 @@ class Absence:
         with contextlib.suppress(OSError):
             if not any(folder.iterdir()):
                 return True
-        ignored = "\n".join(_text(each / ".gitignore") for each in (root, *_between(root, path)))
+        ignored = "\n".join(
+            text_if_regular(each / ".gitignore") for each in (root, *_between(root, path))
+        )
         patterns = (line.strip().strip("/") for line in ignored.splitlines()[:_MOST_LINES])
         parts = path.relative_to(root).parts if path.is_relative_to(root) else path.parts
         return any(
@@ -151,7 +153,7 @@ class Absence:
                 if same or near.name.startswith(f"{path.name}."):
                     return True
         named = re.compile(rf"(?<![\w.-]){re.escape(stem)}\.")
-        return any(named.search(_text(package / name)) for name in _BUILDING)
+        return any(named.search(text_if_regular(package / name)) for name in _BUILDING)
 
     @cached_property
     def _repository(self) -> Path | None:
@@ -181,11 +183,3 @@ def _ignores(pattern: str, parts: tuple[str, ...]) -> bool:
     if "/" in pattern:
         return fnmatch("/".join(parts), pattern) or fnmatch("/".join(parts), f"{pattern}/*")
     return any(fnmatch(part, pattern) for part in parts)
-
-
-def _text(file: Path) -> str:
-    """The text of a file; empty if it cannot be read."""
-    try:
-        return read_regular_text(file)
-    except OSError:
-        return ""

@@ -25,7 +25,7 @@ def stopping(use: LaunchUse | None) -> Iterator[Diagnostic]:
     """
     if use is None or not use.simulated or use.lacking:
         return
-    known = {each.origin.line: each.origin for each in use.unfound}
+    known = {each.origin.line for each in use.unfound}
     for each in use.stopped:
         if each.what == "parameters" and each.origin.line in known:
             continue  # reported with the controllers that do not start

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cartwheel.codes.files import DESCRIPTION_NOT_EXPANDED
 from cartwheel.description.elements.xml import Node, needs_xacro, readable_file
-from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.files.regular_files import text_if_regular
 from cartwheel.description.launches.launch_use import LaunchUse, unread
 from cartwheel.errors import Diagnostic, Origin
 
@@ -36,10 +36,7 @@ def needs_expansion(description: Path) -> bool:
 
 def _text(description: Path) -> str:
     """The text of a file without comments; empty if it cannot be read."""
-    try:
-        first, *rest = read_regular_text(description).split("<!--")
-    except OSError:
-        return ""
+    first, *rest = text_if_regular(description).split("<!--")
     return "".join((first, *(each.partition("-->")[2] for each in rest)))
 
 
@@ -115,10 +112,7 @@ def _lost(description: Path) -> str:
 
 def _edited(description: Path) -> Iterator[Diagnostic]:
     """The diagnostic for the output of xacro to which ``$(find …)`` was added."""
-    try:
-        text = read_regular_text(description)
-    except OSError:
-        return
+    text = text_if_regular(description)
     # Parsing takes much longer than a look.
     root = readable_file(description) if _FIND in text and _GENERATED in text[:_HEAD] else None
     origin = None if root is None else _first_find(root)
